@@ -9,10 +9,10 @@ from sixflip_host.diagnosis import answer
 from sixflip_host.diagnosis.diagnose import diagnose
 from sixflip_host.diagnosis.simulator import (
     against_simulator,
-    evidence_of_logs,
     hypotheses,
     lacking_effects,
     remaining_gap,
+    sensor_axes,
 )
 from tests.worlds.tumbled import RATE_HZ, read, tumbled
 
@@ -187,7 +187,7 @@ def test_a_channel_that_hears_no_more_than_the_others_and_noise_is_not_constant(
     h = hypotheses.Hypothesis("healthy", signal, *hypotheses.none(len(t)))
 
     def dead(measured):
-        return [not axes[2].any() for axes, _ in evidence_of_logs.candidates(
+        return [not axes[2].any() for axes, _ in sensor_axes.candidates(
             h, measured, "accel", np.ones(3, bool))]
     assert not any(dead(measured))
     signal[:, 2] += 0.1 * np.sin(0.9 * t)
@@ -206,5 +206,5 @@ def test_a_channel_of_nothing_but_noise_says_nothing_of_another_ones_gain():
     measured[:, 0] += 5.0 * noise
     measured[:, 2] += 5.0 * noise
     h = hypotheses.Hypothesis("healthy", signal, *hypotheses.none(len(t)))
-    assert all(axes[1].any() for axes, _ in evidence_of_logs.candidates(
+    assert all(axes[1].any() for axes, _ in sensor_axes.candidates(
         h, measured, "accel", np.ones(3, bool)))

@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 from scipy.spatial.transform import Rotation
 
 from sixflip_host.capture.capture import Capture
@@ -174,3 +175,60 @@ def test_a_rocket_s_thrust_is_no_wrong_scale_at_rest(seconds, said):
     damage = wrong_scale.accelerometer([session])
     assert not session.runs and (damage is not None) == said
     assert not said or "at rest" not in damage.words
+
+
+def in_a_hand(seconds=21.0, rate_hz=100.0, seed=4):
+    """(t, force, rate rad/s) of a thing that is turned about and then held for three seconds, in
+    which it trembles at 2 to 6 Hz and turns on by some deg/s, so that it ends at other angles."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, seconds, 1.0 / rate_hz)
+    held = 1.0 / (1.0 + np.exp(-4.0 * (np.abs(t - 11.0) - 1.7)))[:, None]
+
+    def waves(hz, size):
+        each = rng.uniform(*hz, (6, 3)), rng.uniform(0.0, 2.0 * np.pi, (6, 3))
+        return size * np.sin(2.0 * np.pi * each[0] * t[:, None, None] + each[1]).sum(axis=1)
+
+    rate = held * waves((0.2, 1.5), 25.0) + (1.0 - held) * (
+        waves((2.0, 6.0), 0.8) + [-1.7, -0.7, 1.3])
+    turns = Rotation.from_rotvec(np.radians(rate) / rate_hz)
+    turn, turned = Rotation.identity(), []
+    for step in turns:
+        turned.append(turn)
+        turn = turn * step
+    moved = held * waves((0.5, 3.0), 0.4) + (1.0 - held) * waves((2.0, 6.0), 0.05)
+    return t, Rotation.concatenate(turned).inv().apply(moved + [0.0, 0.0, G]), np.radians(rate)
+
+
+def test_a_hand_that_holds_still_is_no_rest_and_how_it_turns_on_no_bias():
+    """What it turned by in two calm seconds was set as the simulator's bias, on top of what the
+    two differ by."""
+    t, force, rate = in_a_hand()
+    off = np.array([-0.4, -0.25, 0.3])
+    real = read(t, force, rate, 1, off)
+    assert not traces.trace_from_capture("hand", real).rests
+    found = comparison.compare([("real", real)], "sim", read(t, force, rate, 2))
+    assert found.alignment.same
+    told = {p.axis: p for p in found.parameters if (p.name, p.sensor) == ("bias", "gyro")}
+    for axis, of_it in zip("xyz", off):
+        assert told[axis].differs and told[axis].set_to == pytest.approx(of_it, abs=0.03)
+    assert {(p.name, p.sensor) for p in found.differs} == {("bias", "gyro")} and not found.left
+
+
+@pytest.mark.parametrize("swings, kept", [
+    ("white, of any size that a simulator has", True), ("behind a slow filter", True),
+    ("a gait", False), ("a tremor", False)])
+@pytest.mark.parametrize("seconds", [0.7, 2.0, 8.0])
+def test_what_swings_faster_than_its_means_show_is_no_rest(swings, kept, seconds):
+    rng, t = np.random.default_rng(7), np.arange(0.0, seconds, 0.01)
+    white = rng.standard_normal((len(t) + 200, 3))
+    if swings == "a gait":
+        rate = 6.0 * np.sin(2.0 * np.pi * (1.9 * t[:, None] + [0.1, 0.4, 0.7])) + 0.4 * white[200:]
+    elif swings == "a tremor":
+        rate = sum(1.5 * np.sin(2.0 * np.pi * hz * t[:, None] + [hz, 2.0 * hz, 3.0 * hz])
+                   for hz in (2.3, 3.1, 4.4, 5.7)) + 0.05 * white[200:]
+    elif swings == "behind a slow filter":  # of 5 Hz, a density of 0.03 deg/s
+        rate = 0.3 * lfilter([0.27], [1.0, -0.73], white, axis=0)[200:]
+    else:  # 0.2 deg/s per root Hz
+        rate = 2.0 * white[200:]
+    found = rest_or_course.resting(rate + [0.4, -1.1, 0.2], [(0, len(t))], 100.0, 0.002, 0.015)
+    assert found == ([(0, len(t))] if kept else [])

@@ -1,12 +1,18 @@
 """What is left of the gap of two logs of one motion is what the numbers told leave, and no other
 numbers that a fit may have besides."""
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sixflip_host.diagnosis.simulator import comparison, numbers_told
+from sixflip_host.diagnosis.simulator import (
+    comparison,
+    noise_and_registers,
+    numbers_told,
+    traces,
+)
 from tests.worlds.tumbled import RATE_HZ, read, tumbled
 
 
@@ -172,3 +178,22 @@ def test_numbers_that_no_two_parts_differ_by_are_something_else(scales, bias, do
     found = numbers_told.doubted(SimpleNamespace(
         conventions=(), fit=fit, live=np.ones(3, bool), kind="accel"), 0.0)
     assert bool(found) is doubted and (not found or found[0] > 0.99)
+
+
+def test_a_noise_that_is_hardly_known_ends_above_nothing():
+    """Of four pairs of means it was "4.9 [-0.27, 10.1]"."""
+    rng = np.random.default_rng(3)
+    t = np.arange(0.0, 1.0, 0.01)
+
+    def still(sd):
+        return traces.Trace("log", t, 9.8 + sd * rng.standard_normal((100, 3)), None, None, 100.0,
+                            9.80665, ((0, 100),), (None,), (1e-4, None), {"accel": 0.05},
+                            np.zeros(100, bool), np.zeros(100, bool))
+    found, _ = noise_and_registers.noises(*(
+        replace(log, rate=np.radians(log.force - 9.8), quantum=(1e-4, 1e-6), flicker={
+            "accel": 0.05, "gyro": 0.002}) for log in (still(0.5), still(0.01))))
+    assert len(found) == 6 and all(p.differs for p in found)
+    for p in found:
+        assert 0.0 < p.real_interval[0] < p.real < p.real_interval[1]
+        assert 0.0 < p.difference_interval[0] < p.difference < p.difference_interval[1]
+        assert p.real_interval[1] / p.real == pytest.approx(p.real / p.real_interval[0])

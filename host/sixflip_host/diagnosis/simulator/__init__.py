@@ -4,7 +4,7 @@ traces, log_rests, rest_or_course, row_times, single_log, held_readings
                                    what one log says of itself
 alignment, motion_match, lag_path, clock_course, pairing
                                     two logs of one motion on one clock and one grid
-one_motion, hypotheses, evidence_of_logs, conventions, convention_findings
+one_motion, hypotheses, sensor_axes, evidence_of_logs, conventions, convention_findings
                                    layer 1: what the simulator's numbers mean, by the same motion
 own_calibration, own_motion, own_consistency, gravity_directions
                                    layer 1 where the motions differ: each log by its own rests

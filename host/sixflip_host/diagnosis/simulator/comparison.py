@@ -86,13 +86,13 @@ class Comparison:
         """Sensors of which far more is left than noise, and than a tenth of the gap, and nothing
         that goes on for seconds: it may be shaking that each log has of its own, and may be the
         sensor's. Where the real one is known to shake more, by more than is left, it is that. And
-        those of which that tenth is left while no log tells the noise; and the gyro that lacks
-        slow turns, which what turns it may lack."""
+        those of which that tenth is left, and more than a chip flickers by, while no log tells the
+        noise; and the gyro that lacks slow turns, which what turns it may lack."""
         shakes = {kind: np.sqrt(sum(p.difference ** 2 for p in self.differs if (
             p.name, p.sensor) == ("shaking", kind) and p.difference > 0.0) / 3.0)
             for kind in self.gap}
         return [kind for kind, gap in self.gap.items()
-                if not gap[2] and _open(gap, 0.0)
+                if not gap[2] and gap[1] > self.real.flicker[kind] and _open(gap, 0.0)
                 or kind not in self.wanders and gap[1] > shakes[kind] and _open(gap, FAR_ABOVE)
                 or kind == "gyro" and self.bands and self.of_gyro < dead_zone.GYRO]
 

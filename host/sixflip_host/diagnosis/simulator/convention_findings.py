@@ -11,6 +11,7 @@ from scipy import special
 from sixflip import RAIL
 
 from ...capture.registers import SENSORS
+from . import sensor_axes
 
 # Probability from which on a convention is named: whoever reads it changes a simulator, so that
 # one wrong name in a hundred is the most that is allowed.
@@ -32,6 +33,9 @@ WORDS = {
     "accel_axes": "has its axes swapped or mirrored",
     "gyro_axes": "has its axes swapped or mirrored",
     "both_axes": "has the axes of both sensors swapped or mirrored in the same way",
+    "accel_mounting": "is mounted in another attitude than the real one",
+    "gyro_mounting": "is mounted in another attitude than the real one",
+    "both_mounting": "has both sensors mounted in another attitude than the real one",
     "accel_unit": "uses another unit",
     "gyro_unit": "uses another unit",
     "accel_delay": "is late against the gyro",
@@ -144,6 +148,9 @@ def described(name, kind, fit, probability, nats, live):
                        " and ".join(dead), value=dict.fromkeys(dead, 0.0), unit="1")
     if name.endswith("_axes"):
         return other_axes(name, kind, probability, nats, fit.axes)
+    if name.endswith("_mounting"):
+        turn, words = sensor_axes.turn_of(fit.axes)
+        return finding(name, kind, probability, nats, words, value=turn, unit="°")
     if name.endswith("_unit"):
         return other_unit(kind, probability, nats, fit.unit)
     return finding(name, kind, probability, nats)
@@ -151,7 +158,7 @@ def described(name, kind, fit, probability, nats, live):
 
 def other_axes(name, sensor, probability, nats, axes):
     """The Convention of a sensor that reads along these axes (3, 3) of the real one's."""
-    value = {a: signed(row) for a, row in zip("xyz", axes)}
+    value = {a: sensor_axes.signed(row) for a, row in zip("xyz", axes)}
     return finding(name, sensor, probability, nats, "its axes are the sensor's so: " + ", ".join(
         "%s = %s" % pair for pair in value.items()), value=value, unit="axis")
 
@@ -160,14 +167,6 @@ def other_unit(kind, probability, nats, unit):
     """The Convention of a sensor that reads in another unit, of which so many are one."""
     return finding(kind + "_unit", kind, probability, nats, "multiply by %.5g: %s" % (
         1.0 / unit, unit_words(kind, unit)), value={"factor": float(unit)}, unit="1")
-
-
-def signed(row):
-    """"-y" for (0, -1, 0), "0" for nothing."""
-    if not row.any():
-        return "0"
-    i = int(np.abs(row).argmax())
-    return ("-" if row[i] < 0 else "") + "xyz"[i]
 
 
 def unit_words(kind, unit):
@@ -181,13 +180,15 @@ def unit_words(kind, unit):
 
 def merged(findings):
     """Both sensors' axes turned in the same way are one finding, of the whole device."""
-    axes = {c.sensor: c for c in findings if c.name in ("accel_axes", "gyro_axes")}
-    if len(axes) == 2 and axes["accel"].value == axes["gyro"].value:
-        accel = axes["accel"]
-        findings = [c for c in findings if c not in axes.values()]
-        findings.append(finding(
-            "both_axes", "device", min(c.probability for c in axes.values()),
-            sum(c.nats for c in axes.values()), accel.set_to, value=accel.value, unit=accel.unit))
+    for what in ("_axes", "_mounting"):
+        axes = {c.sensor: c for c in findings if c.name in ("accel" + what, "gyro" + what)}
+        if len(axes) == 2 and sensor_axes.alike(*(_matrix([c], k) for k, c in axes.items())):
+            accel = axes["accel"]
+            findings = [c for c in findings if c not in axes.values()]
+            findings.append(finding(
+                "both" + what, "device", min(c.probability for c in axes.values()), sum(
+                    c.nats for c in axes.values()), accel.set_to, value=accel.value,
+                unit=accel.unit))
     return list(findings)
 
 
@@ -222,7 +223,7 @@ def _counts(counts, matrix):
     """int16 (n, 3): counts along other axes; the one count without a mirror image stays."""
     if np.array_equal(matrix, np.eye(3)):
         return counts
-    turned = np.asarray(counts, dtype=np.int64) @ matrix.astype(np.int64)
+    turned = np.rint(np.asarray(counts, dtype=np.int64) @ matrix)
     return np.clip(turned, -RAIL - 1, RAIL).astype(counts.dtype)
 
 
@@ -231,18 +232,11 @@ def _matrix(findings, kind):
     matrix = np.eye(3)
     for c in findings:
         if c.name in (kind + "_axes", "both_axes"):
-            matrix = matrix @ axes_matrix(c.value)
+            matrix = matrix @ sensor_axes.matrix_of(c.value)
+        if c.name in (kind + "_mounting", "both_mounting"):
+            matrix = matrix @ sensor_axes.mounted(c.value)
         if c.name == "force_sign" and kind == "accel":
             matrix = -matrix
-    return matrix
-
-
-def axes_matrix(value):
-    """(3, 3) of {"x": "-y", ...}"""
-    matrix = np.zeros((3, 3))
-    for i, axis in enumerate("xyz"):
-        if value[axis] != "0":
-            matrix[i, "xyz".index(value[axis][-1])] = -1.0 if value[axis][0] == "-" else 1.0
     return matrix
 
 

@@ -14,6 +14,7 @@ from . import (
     numbers_told,
     pairing,
     remaining_gap,
+    sensor_axes,
     single_log,
 )
 
@@ -22,6 +23,7 @@ PRIOR_HEALTHY, PRIOR_EACH, PRIOR_NAMELESS = 0.9, 0.02, 0.005
 # Of a gyro whose axes are swapped as its accelerometer's are: the two are one part more often than
 # not, and the half of it is left to a simulator that swaps one of them.
 PRIOR_SAME = 0.5
+SHARED_AXES = "accel_axes", "accel_mounting"  # which both sensors of one part have
 # Of a factor from 1 that is a wrong time step: rates that are mistaken for each other, 50, 60, 100
 # and 120 Hz, are 1.2 apart and more; by less a scale is wrong, or gravity.
 LEAST_STEP = 0.1
@@ -78,7 +80,7 @@ def same_motion(real, sim, alignment, motion, live, fresh_hz, full_scale):
             sensor_fits[kind] = motion_match.in_step(
                 lambda aligned, kind=kind, rest=rest: one_sensor(kind, real, sim, aligned, *rest),
                 kind, real, sim, alignment)
-            if any(c.name == "accel_axes" for c in sensor_fits[kind].conventions):
+            if any(c.name in SHARED_AXES for c in sensor_fits[kind].conventions):
                 swapped = sensor_fits[kind].fit.axes
     return sensor_fits
 
@@ -225,26 +227,23 @@ def posterior(kind, fits, live, swapped=None):
 
 def prior(name, fit=None, swapped=None):
     """Probability of one thing that a simulator may do otherwise, before looking."""
-    if name == "gyro_axes" and swapped is not None and np.array_equal(fit.axes, swapped):
+    if name.startswith("gyro_") and swapped is not None and sensor_axes.alike(fit.axes, swapped):
         return PRIOR_SAME
+    if name.endswith("_mounting"):
+        return PRIOR_EACH * np.exp(sensor_axes.of_mounting(fit.axes))
     return PRIOR_NAMELESS if name == "unknown" else PRIOR_EACH
 
 
 def names(fit, kind, live):
     """What a Fit says the simulator does other than a sensor: () is healthy."""
-    deviations = []
-    if fit.name == "":
-        deviations.append("unknown")
-    elif fit.name != "healthy" and not (fit.name == "time_step"
-                                        and abs(fit.extra[0]) < LEAST_STEP):
-        deviations.append(fit.name)
+    small = fit.name == "time_step" and abs(fit.extra[0]) < LEAST_STEP
+    deviations = [] if fit.name == "healthy" or small else [fit.name or "unknown"]
     answers = live & fit.axes.any(axis=1)
     if (live & ~answers).any():
         deviations.append("constant_channel")
     turned = not np.array_equal(fit.axes[answers], np.eye(3)[answers])
-    if turned and fit.name not in ("world_frame_rates", "world_frame_forces"):
-        minus = kind == "accel" and live.all() and np.array_equal(fit.axes, -np.eye(3))
-        deviations.append("force_sign" if minus else kind + "_axes")
+    if turned and not fit.name.startswith("world_frame"):
+        deviations.append(sensor_axes.name_of(fit.axes, kind, live))
     if fit.unit != 1.0:
         deviations.append(kind + "_unit")
     return tuple(deviations)

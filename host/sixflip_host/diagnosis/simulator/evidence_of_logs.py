@@ -9,17 +9,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sixflip import STANDARD_G
-
 from ...experiment.projection import MOST_ROWS, regression
-from ..detect import axis_order
 from ..detect.wrong_scale import WIDEST
-from .hypotheses import BIAS, DEAD, DEG, DELAY_S, FREE, SHAPE
+from . import sensor_axes
+from .hypotheses import BIAS, DELAY_S, FREE, SHAPE
+from .sensor_axes import DEAD
 
-HEARD = 2.0  # times what is left of a channel, above which its own motion would show in it
 # Nats that a heading costs, which may be any: 4 % of misalignment tell so many of them apart.
 HEADING = float(np.log(2.0 * np.pi / (np.sqrt(2.0 * np.pi) * SHAPE)))
-NOTHING = 0.5  # of a channel's power, from which on it says nothing of the motion
 LEAST_FACTOR = 1e-3  # of a channel: it reads nothing; with the other sign it is another axis
 ODD = 0.01  # share of the logs whose header says another full scale than the part has, or none
 POINTS = 6  # off by 1e-3 at the end of the widest band, eight rows a period
@@ -61,77 +58,16 @@ def fits(hypothesis, measured, kind, grid_hz, inflation=1.0, own=None, live=None
     takes away."""
     live = np.ones(3, bool) if live is None else live
     every_fit = []
-    for axes, unit in candidates(hypothesis, measured, kind, live, swapped):
-        every_fit.append(fit_one(hypothesis, measured, axes, unit, grid_hz, kind, inflation, own,
-                                 live, rows, left=False, noise_bends=noise_bends))
+    for axes, unit in sensor_axes.candidates(
+            hypothesis, measured, kind, live, swapped):
+        def fitted(axes, unit=unit):
+            return fit_one(hypothesis, measured, axes, unit, grid_hz, kind, inflation, own, live,
+                           rows, left=False, noise_bends=noise_bends)
+        fit = fitted(axes)
+        if sensor_axes.is_mounted(axes) and not hypothesis.heading:
+            fit = fitted(sensor_axes.nearest_turn((np.eye(3) + fit.shape) @ axes))
+        every_fit.append(fit)
     return every_fit
-
-
-def candidates(hypothesis, measured, kind, live, swapped=None):
-    """[(S (3, 3), unit)]"""
-    y = hypothesis.signal
-    design = np.column_stack([y, np.ones(len(y))])
-    free = np.linalg.lstsq(design, measured, rcond=None)[0][:3].T
-    if hypothesis.heading:
-        psi = np.arctan2(free[1, 0] - free[0, 1], free[0, 0] + free[1, 1])
-        c, s = np.cos(psi), np.sin(psi)
-        return [(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]), 1.0)]
-    units = (1.0, DEG, 1.0 / DEG) if kind == "gyro" else (1.0, STANDARD_G, 1.0 / STANDARD_G)
-    if hypothesis.scaled and kind == "gyro":
-        units = units[:1]  # any factor on all that turns it is one of time
-    free[~live] = 0.0
-    tried = [(np.eye(3), unit) for unit in (units if hypothesis.name else units[:1])]
-    if hypothesis.name:
-        # Of a robot on a floor z is what x and y make of it by how crooked it stands, and noise:
-        # what it answers to does not show.
-        own = np.stack([left_of(y[:, i], np.delete(design, i, axis=1)) for i in range(3)], 1)
-        # By their power: the gain of a channel that reads noise alone may be anything.
-        gain = np.sqrt(measured[:, live].var(axis=0).sum() / max(y[:, live].var(axis=0).sum(),
-                                                                 1e-30))
-        left = left_of(measured, design)
-        heard = gain * own.std(axis=0) > HEARD * left.std(axis=0)
-        # What follows from next to nothing does so by any factor.
-        power = gain ** 2 * own.var(axis=0)
-        free = free * power / np.maximum(power + left.var(axis=0)[:, None], 1e-30)
-        size = np.linalg.norm(free, axis=1)
-        # Of a channel that does not follow no axis can be told; a dead one follows from nothing.
-        strays = left.var(axis=0) > NOTHING * measured.var(axis=0)
-        near = np.where(strays[:, None], 0.0, axis_order.nearest(
-            np.where(strays, 0.0, 1.0 / np.maximum(size, 1e-9))[:, None] * free))
-        # What is made of several readings has the noise of all, and none to be missed.
-        dead = live & heard & strays & (size < DEAD * gain) & ~near.any(axis=0) & (
-            hypothesis.name == "healthy")
-        signs = kind == "accel" and np.abs(y.mean(axis=0)) > BIAS[kind]
-        for own in with_strays(near, strays & ~dead, np.broadcast_to(signs, 3)):
-            once = np.abs(own[live]).sum(axis=0).max() < 2
-            if once and not np.array_equal(own[live], np.eye(3)[live]):
-                tried += [(own, unit) for unit in units]
-        if swapped is not None and not any(np.array_equal(swapped, s) for s, _ in tried):
-            tried.append((swapped, 1.0))
-    return tried
-
-
-def with_strays(near, strays, signs):
-    """[S (3, 3)]: near (3, 3) with the rows of strays (3,), which follow nothing, answering to
-    axes that no other row does: each to its own where that is free. signs (3,): axes whose sign
-    gravity tells, as it does an accelerometer's; of others a turn is likelier than a mirror."""
-    near, rows = near.copy(), np.flatnonzero(strays)
-    free = [int(j) for j in np.flatnonzero(~near.any(axis=0))]
-    for i in [*(i for i in rows if i in free), *(i for i in rows if i not in free)]:
-        if free:
-            near[i, free.pop(free.index(i) if i in free else 0)] = 1.0
-    told = [i for i in rows if signs[near[i] != 0.0].any()]
-    moved = [i for i in rows if i in told or near[i].any() and not near[i, i]]
-    signed = [near]
-    for i in moved:
-        signed += [np.where(np.arange(3)[:, None] == i, -s, s) for s in signed]
-    signed.sort(key=np.linalg.det, reverse=True)
-    return signed if told else signed[:1]
-
-
-def left_of(values, design):
-    """values (n, ...) less what the columns of a design (n, k) say of them."""
-    return values - design @ np.linalg.lstsq(design, values, rcond=None)[0]
 
 
 def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, rows, left=True,

@@ -9,7 +9,7 @@ from .. import odds
 from ..detect.wrong_scale import RANGES
 from . import traces
 from .convention_findings import CERTAIN
-from .hypotheses import DEAD
+from .sensor_axes import DEAD
 
 SIGMA = np.radians(4.0)  # of a direction: bias of 60 mg at both ends of a way
 # Of scale and misalignment, as data sheets have them (MPU-6050 PS, section 6.1: 3 % and 2 %).

@@ -11,18 +11,17 @@ import numpy as np
 
 from . import alignment
 from .pairing import GRID_HZ
+from .sensor_axes import SHAPE
 from .traces import spinning
 
-# Prior standard deviations. Scale and misalignment: MPU-6050 PS rev 3.4, tables 6.1 and 6.2 (3 %
-# scale, 2 % cross-axis) and ITG-3205 PS (6 % scale). Zero level: 80 mg and 20 deg/s, the same.
-SHAPE = 0.04
+# Prior standard deviations beside SHAPE. Zero level: 80 mg and 20 deg/s (MPU-6050 PS rev 3.4,
+# tables 6.1 and 6.2).
 BIAS = {"accel": 0.8, "gyro": 0.35}
 FREE = 0.3  # of the nameless one's coefficients: a third of a signal where it should not be
 SLOPES = 0.035  # of gravity along a floor: two degrees, as roads and yards have
 LEVER_M = 0.1  # m: a sensor sits somewhere in a robot of some tens of centimetres
 DELAY_S = 0.05  # s: GAP has 1 to 19 ms of chips; logs made elsewhere had 40 to 80 ms
 SMOOTH_S2 = 2e-4  # half the square of a pole of 8 Hz
-DEAD = 0.1  # of the other channels' gain: below it a channel does not answer
 # Steps of physics in one of the sensor, or the reverse, and how far a factor may be off.
 TIMES = (0.05, 0.1, 0.2, 0.25, 0.33, 0.5, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0)
 TIMES_SPREAD = 0.1  # relative standard deviation of each

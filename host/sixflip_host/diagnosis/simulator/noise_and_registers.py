@@ -56,8 +56,10 @@ def noises(real, sim):
             if a.moving != b.moving:  # of what moves it is known how much it is at most
                 ratio = min(ratio, 0.0) if a.moving else max(ratio, 0.0)
             sigma = np.hypot(a.relative_sigma, b.relative_sigma)
-            found = compared("noise_density", kind, axis, unit, da, da * a.relative_sigma, db,
-                             db * b.relative_sigma, apart=abs(ratio) / sigma)
+            found = in_factors(compared("noise_density", kind, axis, unit, da,
+                                        da * a.relative_sigma, db, db * b.relative_sigma,
+                                        apart=abs(ratio) / sigma),
+                               a.relative_sigma, b.relative_sigma)
             # To be set to what the real one has, however little is known of the simulator's.
             numbers.append(replace(found, set_to=found.real) if found.differs else found)
         heard = (a.per_sample > single_log.DROWNED * floor[0]).all() and not silent
@@ -66,6 +68,19 @@ def noises(real, sim):
             findings += density_convention(kind, a, b, sim.rate_hz)
             asked += 1
     return numbers, merged_noise(findings, asked)
+
+
+def in_factors(found, real_sigma, sim_sigma):
+    """A Parameter of noises that are known to such shares of themselves with intervals that end
+    above nothing, of the difference by those of the two [Zou & Donner, Stat. Med. 27 (2008),
+    1693, equations 9 and 10]."""
+    ends = [tuple(x * np.exp(sign * odds.Z_90 * sigma) for sign in (-1.0, 1.0))
+            for x, sigma in ((found.real, real_sigma), (found.simulated, sim_sigma))]
+    (low, high), (least, most) = ends
+    difference = found.real - found.simulated
+    return replace(found, real_interval=ends[0], simulated_interval=ends[1], difference_interval=(
+        float(difference - np.hypot(found.real - low, most - found.simulated)),
+        float(difference + np.hypot(high - found.real, found.simulated - least))))
 
 
 def density_convention(kind, real, sim, rate_hz):

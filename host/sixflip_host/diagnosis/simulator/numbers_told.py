@@ -15,6 +15,7 @@ from .parameters import MG
 
 SAME = 1e-5  # of a scale that does not differ: a tenth of a count at 1 g
 NEAR = 1.1  # times the least left: what of several numbers leaves as little is told by evidence
+MOSTLY = 0.5  # of an axis, that one is which is turned
 SAME_BIAS = 1e-6  # m/s2 and rad/s, of a bias that does not: less than a count of any chip
 # Standard deviations of what data sheets have, beyond which two parts do not differ: a fifth in
 # scale between the axes of one, half of gravity in bias.
@@ -43,8 +44,8 @@ def told(sensor_fit, numbers, flicker):
     axes = np.abs(sensor_fit.fit.axes)
     return replace(sensor_fit, own=course, hypothesis=replace(
         h, bias_sd=h.bias_sd if h.bias_sd is not None else np.where(
-            axes @ bias > 0.0, hypotheses.BIAS[kind], SAME_BIAS),
-        shape_sd=np.where(axes @ shape @ axes.T > 0.0,
+            axes @ bias > MOSTLY, hypotheses.BIAS[kind], SAME_BIAS),
+        shape_sd=np.where(axes @ shape @ axes.T > MOSTLY,
                           hypotheses.SHAPE if h.shape_sd is None else h.shape_sd, SAME)))
 
 

@@ -88,7 +88,7 @@ def fitted(trace):
             trace, rate / times, ups, bias_sigma / full_scale["accel"] / trace.g))
     biases = trace.rest_means(trace.rate)
     spread = biases.std(axis=0, ddof=1) / np.sqrt(len(biases)) if len(biases) > 2 else \
-        np.full(3, 0.001)
+        np.hypot(0.001, trace.noise_of_rests("gyro"))
     return OwnSensor(accel, bias, gyro, accel_sigma, bias_sigma, gyro_sigma, biases.mean(axis=0),
                      np.maximum(spread, trace.quantum[1] / np.sqrt(12.0)), trace.flicker,
                      full_scale)

@@ -112,10 +112,11 @@ def shapes(real, sim, fits, usable, rounded=None, beside=False):
         if fit is not None:
             # Errors turn with their numbers into the real sensor's axes; of one that no channel of
             # the simulator answers to nothing is known.
-            turn = np.abs(fit.axes)
+            turn, share = np.abs(fit.axes), fit.axes ** 2
             silent = np.where(turn.any(axis=0), 0.0, np.inf)
-            bias_sigma = turn.T @ fit.bias_sigma + silent
-            shape_sigma = turn.T @ fit.shape_sigma @ turn + silent[:, None] + silent
+            bias_sigma = np.sqrt(share.T @ fit.bias_sigma ** 2) + silent
+            shape_sigma = np.sqrt(share.T @ fit.shape_sigma ** 2 @ share) + (
+                silent[:, None] + silent)
             across = _across(fits[kind].hypothesis)
             told, coarse = _follows(fits[kind]), (rounded or {}).get(kind, 0.0) / np.maximum(
                 fits[kind].pair.simulated(kind).std(axis=0) @ turn, 1e-12)

@@ -4,8 +4,10 @@ What is calm beside the rest of a log need not rest: a boat is as calm on every 
 where it drives straight on. At rest the gyro's means over a quarter of a second are white noise of
 any size about one level, beside flicker and a bias that drifts in a straight line; on its way they
 follow a course, of which neighbouring means say nearly the same [Rasmussen & Williams, Gaussian
-Processes for Machine Learning (2006), sections 2.2 and 4.2]. The accelerometer has no say: what
-creeps in it alone is a fault of that sensor, and no motion.
+Processes for Machine Learning (2006), sections 2.2 and 4.2]. What a hand or a gait swings by is as
+good as white in such means, but not between one sample and the next: a rest is white as far as it
+is read, or a filter takes its quick end away, and then it is as loud as parts are. The
+accelerometer has no say: what creeps in it alone is a fault of that sensor, and no motion.
 """
 from functools import lru_cache
 
@@ -32,7 +34,18 @@ DRIFTS = 0.03
 # Times the noise by the differences of neighbouring means, of which a course is a part.
 WHITES = 2.0 ** np.arange(-6, 2)
 LEVEL_DPS = 1e3  # of a bias: any
-FEWEST = 4  # means that can show a course
+FEWEST = 4  # means that can show a course, and what swings
+# deg/s per root Hz of a gyro's noise, and natural logarithms by which parts differ in it, a factor
+# of three (0.005 of an MPU-6050, 0.03 of an ITG-3205 in their data sheets, 0.1 of a phone's), and
+# what is set in simulators or shakes what stands, a factor of four.
+DENSITY, PARTS, SET = 0.02, 1.1, 1.4
+# Natural logarithm, by which the white noise by means differs from that by neighbouring samples:
+# 1.0 to 1.25 times as much in power was measured at rest, 1.5 behind a filter near the end.
+FLAT = 0.4
+# deg/s per root Hz of what swings where a log is calm, its natural logarithm's standard deviation
+# (0.2 to 3 were measured of hands, gaits and roads), and that of how many times as loud it may be
+# in means as between samples.
+SWINGS, SWAYS, SLOWER = 0.7, 1.2, np.log(30.0)
 
 
 def resting(rate, runs, rate_hz, usual, quantum):
@@ -43,10 +56,12 @@ def resting(rate, runs, rate_hz, usual, quantum):
         """By which a span follows a course, or None where it is too short to."""
         length = max(1, round(SUBMEAN_S * rate_hz))
         number = (end - first) // length
+        swings = swing_nats(rate[first:end], rate_hz, quantum)
         if number < FEWEST:
-            return None
+            moves = moving(swings)
+            return moves if moves > odds.PRESENT else None
         means = rate[first:first + number * length].reshape(number, length, 3).mean(axis=1)
-        return course_nats(means, length / rate_hz, usual, quantum)
+        return course_nats(means, length / rate_hz, usual, quantum, swings)
 
     def rests_in(span, prior=0.0):
         """[(first, end)] of what rests in a span, or None where it is too short to tell."""
@@ -108,10 +123,10 @@ def joined(parts):
     return whole
 
 
-def course_nats(means, seconds, usual, quantum):
+def course_nats(means, seconds, usual, quantum, swings=-np.inf):
     """Nats by which means (k, 3) deg/s over so many seconds each follow a course about one axis or
     several, over a rest: of either the mean over what it may be, about each axis the white noise
-    at its likeliest."""
+    at its likeliest. swings (3,): swing_nats() of the same."""
     floor = max(quantum ** 2 / 12.0, 1e-12)
     # (axes, whites) of the white noise's variance
     white = np.maximum(0.5 * np.var(np.diff(means, axis=0), axis=0)[:, None] * WHITES, floor)
@@ -122,9 +137,38 @@ def course_nats(means, seconds, usual, quantum):
         logs.append((-0.5 * (np.log(power) + seen / power).sum(axis=2)).max(axis=1))
     rest, course = (np.logaddexp.reduce(x, axis=0) - np.log(len(x)) for x in (
         logs[:len(FLICKERS)], logs[len(FLICKERS):]))
-    # Of the eight ways in which three axes turn or do not one is the rest.
-    turn = np.logaddexp(0.0, course - rest).sum()
+    return moving(np.logaddexp(course - rest, swings))
+
+
+def moving(nats):
+    """Nats over a rest, of three axes that turn by such nats (3,) each or do not: of the eight
+    ways in which they may one is the rest."""
+    turn = max(np.logaddexp(0.0, nats).sum(), odds.SMALLEST)
     return float(turn + np.log(-np.expm1(-turn)) - np.log(7.0))
+
+
+def swing_nats(rate, rate_hz, quantum):
+    """(3,) nats by which a span of a rate (n, 3) deg/s swings faster than its means show, over the
+    noise of a rest: that is white from its means to neighbouring samples, or has lost its quick
+    end and is as loud in its means as that of parts; what swings is as loud as hands are [all by
+    how well so many means tell a variance: Wilson & Hilferty, PNAS 17 (1931), 684]."""
+    length = max(1, min(round(SUBMEAN_S * rate_hz), len(rate) // FEWEST))
+    number = len(rate) // length
+    if length < 2 or number < FEWEST:
+        return np.full(3, -np.inf)
+    means = rate[:number * length].reshape(number, length, 3).mean(axis=1)
+    floor = quantum ** 2 / 12.0 / rate_hz
+    by_means, by_samples = (0.5 * np.log(np.maximum(0.5 * each * (np.diff(x, axis=0) ** 2).mean(
+        axis=0) / rate_hz, floor)) for each, x in ((length, means), (1, rate)))
+    known = 1.5 * 0.5 / number  # variance of such a logarithm: of differences, a third is lost
+
+    def log(off, variance):
+        return -0.5 * (off ** 2 / (variance + known) + np.log(2.0 * np.pi * (variance + known)))
+
+    white = log(by_means - by_samples, FLAT ** 2) + log(by_samples - np.log(DENSITY), SET ** 2)
+    filtered = log(by_means - np.log(DENSITY), PARTS ** 2) - np.log(SLOWER)
+    swings = log(by_means - np.log(SWINGS), SWAYS ** 2) - np.log(SLOWER)
+    return swings - np.logaddexp(white, filtered) + np.log(2.0)
 
 
 @lru_cache(maxsize=64)

@@ -56,6 +56,13 @@ class Trace:
         return {kind: single_log.noise(self, values) for kind, values in (
             ("accel", self.force), ("gyro", self.rate)) if values is not None}
 
+    def noise_of_rests(self, kind):
+        """(3,) by how much a sensor's noise makes the mean over all that rests err, 0 where it is
+        not known."""
+        seconds = sum(b - a for a, b in self.rests) / self.rate_hz
+        noise = self.noise[kind]
+        return np.zeros(3) if noise is None else noise.density / np.sqrt(seconds)
+
     def rest_means(self, values):
         """(rests, 3): the mean of values (n, 3) over each rest."""
         return np.array([values[a:b].mean(axis=0) for a, b in self.rests]).reshape(-1, 3)
