@@ -8,7 +8,7 @@ from scipy.signal import lfilter
 
 from sixflip_host.diagnosis import answer
 from sixflip_host.diagnosis.diagnose import diagnose
-from sixflip_host.diagnosis.simulator import comparison, remaining_gap, single_log
+from sixflip_host.diagnosis.simulator import comparison, log_noise, remaining_gap
 from sixflip_host.present import simulator_words
 from tests.worlds.tumbled import RATE_HZ, read, tumbled
 
@@ -135,4 +135,4 @@ def test_what_swings_steadily_at_rest_is_no_noise(hz):
     values = 0.02 * rng.standard_normal((len(t), 3))
     values[:, 2] += 0.08 * np.sin(2.0 * np.pi * hz * t)
     log = SimpleNamespace(rests=[(k, k + 950) for k in range(0, 4000, 1000)], rate_hz=100.0)
-    assert single_log.noise(log, values).density == pytest.approx([0.002] * 3, rel=0.2)
+    assert log_noise.noise(log, values).density == pytest.approx([0.002] * 3, rel=0.2)

@@ -130,11 +130,11 @@ def test_a_sign_is_no_scale_of_less_than_nothing_and_no_bias_of_twice_gravity(ac
 
 @pytest.mark.parametrize("name, times", [("no_gravity", 0.0), ("gravity_sign", -1.0)])
 def test_a_robot_on_springs_whose_simulator_gets_gravity_wrong(name, times):
-    """Its gyro's cross axes make a degree of tilt of each turn, beside the third of a degree by
+    """Its gyro's cross axes make a degree of tilt of each turn, beside the half degree by
     which it rolls on its way: that was a lever arm of 34 cm below an axis turned over."""
     t, force, rate = driven()
     way = np.abs(rate[:, 2]) / np.abs(rate[:, 2]).max()
-    roll = np.radians(0.3) * np.sin(2.0 * np.pi * 1.1 * t) * np.sqrt(way)
+    roll = np.radians(0.6) * np.sin(2.0 * np.pi * 1.1 * t) * np.sqrt(way)
     up = np.stack([0.0 * t, np.sin(roll), np.cos(roll)], 1)
     moved = force - [0.0, 0.0, 1.0]
     turns = rate + np.outer(np.degrees(np.gradient(roll, t)), [1.0, 0.0, 0.0])

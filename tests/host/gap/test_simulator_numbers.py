@@ -11,6 +11,7 @@ from sixflip_host.diagnosis.simulator import (
     alignment,
     evidence_of_logs,
     hypotheses,
+    log_noise,
     noise_and_registers,
     own_calibration,
     own_motion,
@@ -18,7 +19,6 @@ from sixflip_host.diagnosis.simulator import (
     parameters,
     shaking,
     simulator_answer,
-    single_log,
     traces,
 )
 from sixflip_host.experiment import projection
@@ -98,7 +98,7 @@ def test_a_density_is_one_with_rests_and_without():
     made = traces.trace_from_capture("made", tumbled.read(*tumbled.tumbled(1), 1))
     assert made.rests
     values = 0.05 * np.random.default_rng(2).standard_normal((len(made.t), 3))
-    both = [single_log.noise(trace, values).density for trace in (made, replace(made, rests=()))]
+    both = [log_noise.noise(trace, values).density for trace in (made, replace(made, rests=()))]
     for density in both:
         assert density == pytest.approx(0.05 / np.sqrt(tumbled.RATE_HZ), rel=0.15)
 
@@ -115,7 +115,7 @@ def test_a_noise_to_set_is_that_of_the_real_log_however_little_is_known_of_the_o
     rng, logs = np.random.default_rng(1), []
     for density in (0.1, 0.9):
         mg = np.full(3, density / parameters.MG)
-        level = single_log.Noise(mg, 0.3, 10.0 * mg, 0.3)
+        level = log_noise.Noise(mg, 0.3, 10.0 * mg, 0.3)
         logs.append(SimpleNamespace(
             force=rng.standard_normal((400, 3)), rate=None, noise={"accel": level, "gyro": None},
             quantum=(1e-6, 1e-6), rate_hz=100.0, put_in=np.zeros(400, bool)))
@@ -127,7 +127,7 @@ def test_a_rest_of_a_second_tells_the_noise_and_not_what_shakes_the_way():
     """Its noise was that of all of the log, ten times as large."""
     values = np.random.default_rng(3).standard_normal((1500, 3))
     values[20:110] *= 0.1
-    noise = single_log.noise(made_of(values, ((20, 110),)), values)
+    noise = log_noise.noise(made_of(values, ((20, 110),)), values)
     assert noise.density == pytest.approx(0.01, rel=1.0) and not noise.moving
 
 
@@ -146,7 +146,7 @@ def test_what_a_filter_takes_away_is_not_taken_off_the_density():
     white = np.random.default_rng(6).standard_normal((1500, 3))
     leak = np.exp(-2.0 * np.pi * 5.0 / 100.0)
     values = lfilter([1.0 - leak], [1.0, -leak], white, axis=0)
-    noise = single_log.noise(made_of(values, ((0, 1500),)), values)
+    noise = log_noise.noise(made_of(values, ((0, 1500),)), values)
     assert noise.density == pytest.approx(0.1, rel=2.0 * noise.relative_sigma)
     assert noise.relative_sigma < 0.2
 
@@ -303,8 +303,8 @@ def test_a_line_is_no_noise_of_a_log():
     t = np.arange(12000) / 200.0
     values = 0.2 * generator.standard_normal((len(t), 3))
     trace = SimpleNamespace(rate_hz=200.0, rests=((0, 6000), (6000, 12000)))
-    alone = single_log.noise(trace, values).density
-    shaken = single_log.noise(trace, values + 6.0 * np.sin(
+    alone = log_noise.noise(trace, values).density
+    shaken = log_noise.noise(trace, values + 6.0 * np.sin(
         2.0 * np.pi * 37.0 * t + 0.4)[:, None]).density
     np.testing.assert_allclose(alone, 0.2 / np.sqrt(200.0), rtol=0.2)
     np.testing.assert_allclose(shaken, alone, rtol=0.2)

@@ -1,6 +1,6 @@
 """The user's own simulator beside the real sensor: which conventions, numbers and effects differ.
 
-traces, log_rests, rest_or_course, row_times, single_log, held_readings
+traces, log_rests, rest_or_course, row_times, single_log, log_noise, held_readings
                                    what one log says of itself
 alignment, motion_match, lag_path, clock_course, pairing
                                     two logs of one motion on one clock and one grid
@@ -10,7 +10,7 @@ own_calibration, own_motion, own_consistency, gravity_directions
                                    layer 1 where the motions differ: each log by its own rests
 parameters, noise_and_registers, shaking, numbers_told
                                    layer 2: the numbers to set, and what they close of the gap
-against_simulator, dead_zone, lacking_effects, effects_beside
+against_simulator, dead_zone, lacking_effects, lacking_courses, effects_beside
                                    layer 3: the effects that one has and the other lacks
 remaining_gap                      layer 4: what is left of the gap, and what it does to a robot
 comparison, simulator_answer       all layers in their order, and the JSON of them

@@ -171,7 +171,7 @@ def without_smoothing(sensor_fit, rows):
 def own_noise(values, measured, noise, theirs, band_hz):
     """Share (3,) of the real log's noise that the simulator's log has not as well: all of it, but
     for a simulator that was made out of the real log's samples. What they differ by has the noise
-    of both, or the simulator's says what the real noise was; noise, theirs: single_log.Noise."""
+    of both, or the simulator's says what the real noise was; noise, theirs: log_noise.Noise."""
     if noise is None or theirs is None:
         return np.ones(3)
     delay = 0.0  # in rows

@@ -14,7 +14,7 @@ from ...capture import clock
 from ...capture.attitude import carried, levelled, rotation_between, rotations
 from ...errors import BadFile
 from .. import adequacy
-from . import log_rests, row_times, single_log
+from . import log_noise, log_rests, row_times, single_log
 
 DPS = np.pi / 180.0
 
@@ -52,8 +52,8 @@ class Trace:
 
     @cached_property
     def noise(self):
-        """{sensor: single_log.Noise, or None} of the sensors that there are."""
-        return {kind: single_log.noise(self, values) for kind, values in (
+        """{sensor: log_noise.Noise, or None} of the sensors that there are."""
+        return {kind: log_noise.noise(self, values) for kind, values in (
             ("accel", self.force), ("gyro", self.rate)) if values is not None}
 
     def noise_of_rests(self, kind):
