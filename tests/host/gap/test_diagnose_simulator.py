@@ -318,8 +318,7 @@ def test_gravity_of_another_strength_is_no_wrong_time_step(tmp_path, capsys):
 
 @pytest.mark.parametrize("seed", [1, 2], ids=["one motion", "another motion"])
 def test_rates_that_are_divided_by_the_wrong_time_step_are_named(real, tmp_path, capsys, seed):
-    """Of another motion they were gravity added after the rotation, of the same one something
-    that no convention explains."""
+    """They were gravity added after the rotation, of one motion something without a name."""
     t, force, rate = turning(seed)
     answer = diagnosed(capsys, real, capture(tmp_path / "sim.csv", t, force, 0.5 * rate, seed=5))
     assert names(answer) == ["time_step"]
@@ -345,8 +344,7 @@ def test_a_delay_of_the_real_gyro_is_no_delay_of_the_simulator(tmp_path, capsys)
 @pytest.mark.long
 @pytest.mark.parametrize("mg, differs", [(0.25, False), (3.0, True)])
 def test_a_bias_differs_by_more_than_it_flickers(tmp_path, capsys, mg, differs):
-    """In minutes of one motion a quarter of a milligravity is certain, and at the next power-up
-    another one."""
+    """In a motion a quarter of a milligravity is certain, and at the next power-up another."""
     t, force, rate = turning(1, 300.0)
     answer = diagnosed(capsys, capture(tmp_path / "real.csv", t, force + [0, 1e-3 * mg * G, 0],
                                        rate, noise=0.3),
@@ -398,5 +396,5 @@ def test_a_log_of_a_few_rows_is_refused(tmp_path, capsys, rows, short):
     (tmp_path / (short + ".csv")).write_text("\n".join(text[:3 + rows]) + "\n")
     assert cli.main(["diagnose", paths["real"], "--sim", paths["sim"]]) == 4
     said = capsys.readouterr().err
-    assert said.count("\n") == 1 and "expected 8 and more" in said
-    assert "%s.csv: it has %d row" % (short, rows) in said
+    assert said.count("\n") == 1 and "expected 8 and more" in said and (
+        "%s.csv: it has %d row" % (short, rows) in said)
