@@ -1,5 +1,7 @@
 """What turns about one axis only, as all that drives on a floor does, beside its simulator: most
 channels read gravity or noise and nothing else, and are no reason to accuse it."""
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from sixflip_host.diagnosis.simulator import (
     against_simulator,
     comparison,
     convention_findings,
+    conventions,
     log_rests,
     motion_match,
     noise_and_registers,
@@ -226,3 +229,15 @@ def test_what_lies_still_otherwise_is_of_no_motion_and_has_no_convention_for_it(
     assert not found.alignment.same and not found.alignment.moving and not found.conventions
     assert any("no motion to be compared" in said for said in found.remarks)
     assert {p.axis for p in found.differs if (p.name, p.sensor) == ("bias", "gyro")} == {"x", "y"}
+
+
+@pytest.mark.parametrize("said, named", [((), set()), (("time_step",), {"time_step"})])
+def test_a_time_step_is_that_of_both_sensors(said, named):
+    """Seven nats were too few for a car's gyro beside an accelerometer whose time step was wrong:
+    it had scales of -50 %, and biases of the turn that was missed."""
+    fits = [SimpleNamespace(name=name, log=log, axes=np.eye(3), unit=1.0, extra=np.array([-0.5]),
+                            extra_sigma=np.array([0.01]), shape=np.zeros((3, 3)))
+            for name, log in (("healthy", 5329.4), ("time_step", 5336.4))]
+    found, best = conventions.posterior("gyro", fits, np.ones(3, bool), None, said)
+    assert {c.name for c in found} == named
+    assert best.name == ("time_step" if named else "healthy")

@@ -20,8 +20,8 @@ from . import (
 
 # Before looking: nine in ten are right about each sensor, one in fifty has each thing reported.
 PRIOR_HEALTHY, PRIOR_EACH, PRIOR_NAMELESS = 0.9, 0.02, 0.005
-# Of a gyro whose axes are swapped as its accelerometer's are: the two are one part more often than
-# not, and the half of it is left to a simulator that swaps one of them.
+# Of a gyro whose axes are swapped, or its time step wrong, as its accelerometer's are: the two are
+# one part more often than not.
 PRIOR_SAME = 0.5
 SHARED_AXES = "accel_axes", "accel_mounting"  # which both sensors of one part have
 # Of a factor from 1 that is a wrong time step: rates that are mistaken for each other, 50, 60, 100
@@ -60,8 +60,8 @@ class SensorFit:
         what it leaves of every sample."""
         return evidence_of_logs.fit_one(
             self.hypothesis, self.pair.simulated(self.kind), self.fit.axes, self.fit.unit,
-            pairing.GRID_HZ, self.kind, self.inflation, self.own, self.live, rows, left=left,
-            noise_bends=self.noise_bends)
+            pairing.GRID_HZ, self.kind, self.inflation, self.own, self.live, rows, left,
+            self.noise_bends)
 
     @property
     def smoothing_earns(self):
@@ -72,21 +72,23 @@ class SensorFit:
 
 def same_motion(real, sim, alignment, motion, live, fresh_hz, full_scale):
     """{sensor: SensorFit} of two aligned Traces; full_scale of the real one's OwnSensor; live
-    {sensor: (3,)}: channels that change, none of the gyro's where nothing turns."""
-    sensor_fits, swapped = {}, None
+    {sensor: (3,)}: channels that change."""
+    sensor_fits, swapped, said = {}, None, ()
     for kind in ("accel", "gyro"):
         if live[kind].any():
-            rest = motion, live[kind], fresh_hz[kind], full_scale[kind], swapped
+            rest = motion, live[kind], fresh_hz[kind], full_scale[kind], swapped, said
             sensor_fits[kind] = motion_match.in_step(
                 lambda aligned, kind=kind, rest=rest: one_sensor(kind, real, sim, aligned, *rest),
                 kind, real, sim, alignment)
-            if any(c.name in SHARED_AXES for c in sensor_fits[kind].conventions):
+            said = [c.name for c in sensor_fits[kind].conventions]
+            if set(said).intersection(SHARED_AXES):
                 swapped = sensor_fits[kind].fit.axes
     return sensor_fits
 
 
-def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, full_scale, swapped=None):
-    """SensorFit of one sensor; swapped (3, 3): the axes of the other one, where they are."""
+def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, full_scale, *other):
+    """SensorFit of one sensor; other: what is known of the other one, see prior()."""
+    swapped = other[0] if other else None
     noise, theirs = (log.noise[kind] for log in (real, sim))
 
     def asked(pair):
@@ -138,7 +140,7 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, full_scale, s
                                            live, noise_bends), rows)
 
     def best_of(fits):
-        return kept(*posterior(kind, fits, live, swapped))
+        return kept(*posterior(kind, fits, live, *other))
 
     known = 0.0 if None in (noise, theirs) else 2.0 * pair.band_hz * (
         noise.density ** 2 + theirs.density ** 2)
@@ -208,12 +210,12 @@ def local_noise(left):
     return level / np.sqrt((level ** 2).mean())
 
 
-def posterior(kind, fits, live, swapped=None):
-    """(Conventions, the best Fit); swapped (3, 3): axes of the other sensor, None its own."""
+def posterior(kind, fits, live, swapped=None, said=()):
+    """(Conventions, the best Fit); swapped, said: of the other sensor, see prior()."""
     # A factor that is no wrong time step would part what moves it from gravity: no scale does.
     fits = [f for f in fits if f.name != "time_step" or abs(f.extra[0]) >= LEAST_STEP]
-    named = [names(f, kind, live) for f in fits]
-    logs = np.array([f.log + sum(np.log(prior(n, f, swapped)) for n in each) + (
+    named = [evidence_of_logs.names(f, kind, live) for f in fits]
+    logs = np.array([f.log + sum(np.log(prior(n, f, swapped, said)) for n in each) + (
         np.log(PRIOR_HEALTHY) if not each else 0.0) for f, each in zip(fits, named)])
     top = int(logs.argmax())
     best = fits[top]
@@ -225,25 +227,13 @@ def posterior(kind, fits, live, swapped=None):
     return tuple(findings), best
 
 
-def prior(name, fit=None, swapped=None):
-    """Probability of one thing that a simulator may do otherwise, before looking."""
-    if name.startswith("gyro_") and swapped is not None and sensor_axes.alike(fit.axes, swapped):
+def prior(name, fit=None, swapped=None, said=()):
+    """Probability of a thing, before looking; of the other sensor swapped (3, 3): its axes, where
+    they are, None for its own, and said: its names."""
+    same = name.startswith("gyro_") and swapped is not None and sensor_axes.alike(
+        fit.axes, swapped)
+    if same or name == "time_step" and name in said:
         return PRIOR_SAME
     if name.endswith("_mounting"):
         return PRIOR_EACH * np.exp(sensor_axes.of_mounting(fit.axes))
     return PRIOR_NAMELESS if name == "unknown" else PRIOR_EACH
-
-
-def names(fit, kind, live):
-    """What a Fit says the simulator does other than a sensor: () is healthy."""
-    small = fit.name == "time_step" and abs(fit.extra[0]) < LEAST_STEP
-    deviations = [] if fit.name == "healthy" or small else [fit.name or "unknown"]
-    answers = live & fit.axes.any(axis=1)
-    if (live & ~answers).any():
-        deviations.append("constant_channel")
-    turned = not np.array_equal(fit.axes[answers], np.eye(3)[answers])
-    if turned and not fit.name.startswith("world_frame"):
-        deviations.append(sensor_axes.name_of(fit.axes, kind, live))
-    if fit.unit != 1.0:
-        deviations.append(kind + "_unit")
-    return tuple(deviations)

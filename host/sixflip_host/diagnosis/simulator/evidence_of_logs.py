@@ -48,6 +48,20 @@ class Fit:
     left: np.ndarray
 
 
+def names(fit, kind, live):
+    """What a Fit says the simulator does other than a sensor: () is healthy."""
+    deviations = [] if fit.name == "healthy" else [fit.name or "unknown"]
+    answers = live & fit.axes.any(axis=1)
+    if (live & ~answers).any():
+        deviations.append("constant_channel")
+    turned = not np.array_equal(fit.axes[answers], np.eye(3)[answers])
+    if turned and not fit.name.startswith("world_frame"):
+        deviations.append(sensor_axes.name_of(fit.axes, kind, live))
+    if fit.unit != 1.0:
+        deviations.append(kind + "_unit")
+    return tuple(deviations)
+
+
 def fits(hypothesis, measured, kind, grid_hz, inflation=1.0, own=None, live=None,
          rows=None, noise_bends=(0.0, 0.0), swapped=None):
     """Fits of a Hypothesis, one for each S that may be: none, the nearest signed permutation and
