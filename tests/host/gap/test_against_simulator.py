@@ -52,11 +52,12 @@ def test_a_log_that_shows_nothing_of_what_acts_in_motion_is_not_said_to_lack_it(
 def test_the_simulators_remarks_and_silent_effects_are_passed_on(monkeypatch):
     monkeypatch.setattr(against_simulator.detectable, "listed", lambda found: [
         {"effect": "cubic"}, {"effect": "creep"}])
-    found = SimpleNamespace(gaps={"accel": None}, remarks=["its clock stands still"], causes=[
-        ("accel", SimpleNamespace(effect="thermal_bias"))])
-    assert against_simulator._remarks(found) == [
+    found = SimpleNamespace(
+        gaps={"accel": None}, remarks=["its clock stands still", "its x never changes"],
+        causes=[("accel", SimpleNamespace(effect="thermal_bias"))])
+    assert against_simulator._remarks(found, ["its x never changes"]) == [
         "the simulator already has: thermal_bias",
         "the simulator's log: its clock stands still",
         "effects that the simulator's log cannot show: creep, cubic"]
     found.gaps = {}
-    assert "too few poses" in against_simulator._remarks(found)[0]
+    assert "too few poses" in against_simulator._remarks(found, [])[0]

@@ -31,7 +31,7 @@ def bands_of(change, seconds=30.0):
         live=np.array([False, True, False]))}, real, sim)
 
 
-@pytest.mark.parametrize("band, there", [(0.03, 0), (0.04, 0), (0.06, 1), (0.12, 1)])
+@pytest.mark.parametrize("band, there", [(0.03, 0), (0.04, 0), (0.08, 1), (0.12, 1)])
 def test_it_is_wider_than_the_noise_of_both_at_rest(band, there):
     """deg/s, of two logs whose noise together is 0.009 in the frequencies compared: long enough
     ones would tell one of a third of that, too, which either's shaking at rest may be."""
