@@ -207,8 +207,7 @@ def uneven(sizes, left, own, columns, rows, weights, prior):
     window = np.hanning(long + 2)[1:-1] * np.sqrt(8.0 / 3.0)  # has the power of none
     number = np.log2((long // 2 + 1) / np.maximum(np.arange(long // 2 + 1), 0.5)).astype(int)
     size = 3 * p + columns.shape[2]
-    grams, pulls = np.zeros((2, number.max() + 1, size, size))
-    pulls = pulls[:, 0]
+    grams, pulls = np.zeros((number.max() + 1, size, size)), np.zeros((number.max() + 1, size))
     every = np.concatenate([own, columns.reshape(n, -1), left], 1) * rows[:, None]
     for first in range(0, n - long + 1, long):
         spectra = np.fft.rfft(every[first:first + long] * window[:, None], axis=0)
