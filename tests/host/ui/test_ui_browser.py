@@ -1,5 +1,5 @@
 """The page in a real browser: a replayed session, many clicks, a reload, a second tab, malice."""
-
+import contextlib
 import os
 import re
 import sys
@@ -54,18 +54,15 @@ def capture(tmp_path_factory):
 def text(browser, name):
     """What an element shows; the page may draw it anew between two looks."""
     while True:
-        try:
+        with contextlib.suppress(StaleElementReferenceException):
             return browser.find_element("id", name).text
-        except StaleElementReferenceException:
-            continue
 
 
 def page_text(browser):
     """What the whole page shows, nothing while another takes its place."""
-    try:
+    with contextlib.suppress(NoSuchElementException, StaleElementReferenceException):
         return browser.find_element("tag name", "body").text
-    except (NoSuchElementException, StaleElementReferenceException):
-        return ""
+    return ""
 
 
 def click(browser, name, often=1):

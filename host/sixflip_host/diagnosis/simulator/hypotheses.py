@@ -35,13 +35,13 @@ OWN = {"accel": {"celsius": 0.03, "fading": 0.3, "line": 0.15, "pairs": 0.15, "s
        "gyro": {"celsius": 0.017, "fading": 0.017, "line": 0.017, "pairs": 0.006, "signs": 0.06,
                 "force": 0.006}}
 FADES_S = (30.0, 120.0)  # time constants of what fades: of a minute's log, and of warming up
-# Slower than that a gyro's tilt between two rests is its own: a cross axis of 1 % of a robot that
-# turns to one side, or a tenth of a deg/s of bias, make a degree in ten seconds.
-WANDERS_HZ = (.05,.1,.2,.4,.8,1.6)
+# Slower than the first a gyro's tilt between two rests is its own: a cross axis of 1 % of a robot
+# that turns to one side, or a tenth of a deg/s of bias, make a degree in ten seconds. What turns
+# to and fro makes it faster, up to where springs tilt a robot, at 1 to 2 Hz: octave by octave.
+WANDERS_HZ = (0.05, 0.1, 0.2, 0.4, 0.8, 1.6)
 KNOTS = 8  # of the bent line of an axis: four a side, a front end that levels off has one or two
 BENT = 0.03  # of a reading, by which such a line may be off: a bend of 3 % (SHAPE)
 UPRIGHT = 0.05  # cosine of the pitch from which on roll and yaw are one: 87 degrees
-DEG = 180.0 / np.pi
 
 
 # What shows where the thing turns only: along one line of forces a wrong time step is a scale and

@@ -12,7 +12,7 @@ from ..detect import axis_order
 # scale, 2 % cross-axis) and ITG-3205 PS (6 % scale).
 SHAPE = 0.04
 DEAD = 0.1  # of the other channels' gain: below it a channel does not answer
-IN_DEG = 180.0 / np.pi
+DEG = 180.0 / np.pi
 HEARD = 2.0  # times what is left of a channel, above which its own motion would show in it
 GRAVITY_TELLS = 0.8  # m/s2 along an axis, from which on it is no bias (MPU-6050, 80 mg)
 NOTHING = 0.5  # of a channel's power, from which on it says nothing of the motion
@@ -31,7 +31,7 @@ def candidates(hypothesis, measured, kind, live, swapped=None):
         psi = np.arctan2(free[1, 0] - free[0, 1], free[0, 0] + free[1, 1])
         c, s = np.cos(psi), np.sin(psi)
         return [(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]), 1.0)]
-    units = (1.0, IN_DEG, 1.0 / IN_DEG) if kind == "gyro" else (1.0, STANDARD_G, 1.0 / STANDARD_G)
+    units = (1.0, DEG, 1.0 / DEG) if kind == "gyro" else (1.0, STANDARD_G, 1.0 / STANDARD_G)
     if hypothesis.scaled and kind == "gyro":
         units = units[:1]  # any factor on all that turns it is one of time
     free[~live] = 0.0
