@@ -16,9 +16,10 @@ from ..detect.detection import Finding
 from ..hypotheses import Form
 from . import conventions, hypotheses, numbers_told, pairing, parameters, remaining_gap
 from .parameters import MG
+from .sensor_axes import DEG
 
 MOST_SETS = 16  # of names that classes may stand for, tried: each takes a fit of the whole log
-SCALE = {"accel": MG, "gyro": hypotheses.DEG}  # mg to a m/s2, deg/s to a rad/s
+SCALE = {"accel": MG, "gyro": DEG}  # mg to a m/s2, deg/s to a rad/s
 SELDOM = 0.01  # probability below which a form changes no interval
 
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from ...experiment import block_measures, long_rest
 from .. import adequacy, rest_gap
-from .hypotheses import DEG
 from .pairing import GRID_HZ
 from .parameters import MG
+from .sensor_axes import DEG
 
 # Effects that a course can be: a walk of two logs is what each wanders by, and has no name here.
 NAMES = frozenset(["thermal_bias", "thermal_rate", "thermal_scale", "warm_up"])

@@ -21,6 +21,7 @@ from ..hypotheses import Form
 from . import alignment as align_by
 from . import conventions, effects_beside, hypotheses, remaining_gap
 from .parameters import DIFFERS, MG
+from .sensor_axes import DEG
 
 # Effects that are functions of what acts while a thing moves.
 OF_MOTION = ("quadratic", "cubic", "cross_quadratic", "asymmetry", "g_sensitivity",
@@ -203,7 +204,7 @@ def _fitted(sensor_fit, designs, nuisance, rows, left=True):
 def blocks_of(sensor_fit, rows, nothing, best):
     """(before, after) (b,): mean squares, (mg)2 or (deg/s)2, of what nothing and the best Rival
     leave of each block, by a fit that has not seen it; and how many samples it has."""
-    pair, scale = sensor_fit.pair, MG if sensor_fit.kind == "accel" else hypotheses.DEG
+    pair, scale = sensor_fit.pair, MG if sensor_fit.kind == "accel" else DEG
     seconds = max(remaining_gap.FOLD_S, 1.001 * np.ptp(pair.t) / BLOCKS)
     block = ((pair.t - pair.t[0]) / seconds).astype(int)
     power = []

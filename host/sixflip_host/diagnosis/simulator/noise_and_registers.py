@@ -7,8 +7,8 @@ import numpy as np
 
 from .. import odds
 from . import convention_findings, conventions, single_log
-from .hypotheses import DEG
 from .parameters import MG, Parameter, compared
+from .sensor_axes import DEG
 
 # How far a noise that was set by hand may be off, natural logarithm: whoever reads a density off a
 # data sheet, typical for the part's, is taken to be right to a fifth.

@@ -10,8 +10,8 @@ import numpy as np
 from .. import odds
 from . import evidence_of_logs, hypotheses, parameters, remaining_gap
 from .alignment import errors, independent
-from .hypotheses import DEG
 from .parameters import MG
+from .sensor_axes import DEG
 
 SAME = 1e-5  # of a scale that does not differ: a tenth of a count at 1 g
 NEAR = 1.1  # times the least left: what of several numbers leaves as little is told by evidence

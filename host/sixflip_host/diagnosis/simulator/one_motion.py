@@ -26,10 +26,9 @@ from . import (
     traces,
 )
 from .evidence_of_logs import shifted
-from .hypotheses import DEG
 from .pairing import GRID_HZ
 from .parameters import MG, Parameter
-from .sensor_axes import left_of
+from .sensor_axes import DEG, left_of
 
 # Times the largest reading, that the simulator goes beyond it: more than a gyro's scale is off
 # (6 %, ITG-3205 PS). Share of the simulator's rise there that the readings may have, and of its

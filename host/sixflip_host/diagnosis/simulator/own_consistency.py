@@ -14,7 +14,8 @@ from .. import odds
 from ..detect.axis_order import SIGNED
 from . import convention_findings, conventions, traces
 from . import gravity_directions as directions
-from .hypotheses import DEG, TIMES
+from .hypotheses import TIMES
+from .sensor_axes import DEG
 
 NORM_SIGMA = 0.12  # of |force| / g at rest: 80 mg of offset, 3 % of scale [MPU-6000 PS table 6.2]
 RATIO_SIGMA = 1.0  # how alike two runs are in the size of their turn rates, natural logarithm

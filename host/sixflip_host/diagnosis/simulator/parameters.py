@@ -14,7 +14,7 @@ from ...experiment.noise_arrays import flicker_of_mean, flicker_of_sizes
 from .. import odds
 from . import convention_findings
 from .alignment import errors
-from .hypotheses import DEG, SHAPE
+from .sensor_axes import DEG, SHAPE
 
 # Some thirty numbers are compared: at this many standard errors one log pair in 500 shows a
 # difference that is none (Bonferroni, normal).

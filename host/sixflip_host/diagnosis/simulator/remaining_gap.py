@@ -10,8 +10,8 @@ from scipy import special
 
 from .. import odds
 from . import pairing
-from .hypotheses import DEG
 from .parameters import MG
+from .sensor_axes import DEG
 
 # s of a block that is held out as a whole: longer than what neighbouring samples have in common, a
 # move of a robot for instance, and short enough that half of a log of a minute has several.

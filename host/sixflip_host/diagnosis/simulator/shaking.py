@@ -13,8 +13,8 @@ from scipy.interpolate import CubicSpline
 
 from . import row_times, single_log
 from .alignment import BAND_HZ, independent
-from .hypotheses import DEG
 from .parameters import DIFFERS, MG, compared
+from .sensor_axes import DEG
 
 FASTER_HZ = 2.0 * BAND_HZ  # where what the logs are compared by has faded
 SHOWS = 0.4  # of the rows a second: what a log of them shows undistorted
