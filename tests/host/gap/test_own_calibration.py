@@ -10,6 +10,7 @@ from sixflip_host.capture.attitude import carried, rotations
 from sixflip_host.diagnosis.simulator import (
     gravity_directions,
     own_calibration,
+    own_rests,
     remaining_gap,
 )
 from sixflip_host.present import simulator_words
@@ -32,7 +33,8 @@ def test_windows_of_a_flight_are_no_rests(seed):
     generator = np.random.default_rng(seed)
     directions = np.array([0.0, 0.0, 1.0]) + 0.5 * generator.standard_normal((7, 3))
     sizes = G * (1.0 + 0.04 * generator.standard_normal(7))
-    matrix, bias, sigma, bias_sigma = own_calibration.by_norm(means_of(directions, sizes), G)
+    at_rest = own_rests.by_norm(means_of(directions, sizes), G)
+    (matrix, bias), (sigma, bias_sigma) = own_rests.matrix_of(at_rest.p), at_rest.sigma
     off = matrix @ MATRIX - np.eye(3)
     assert np.abs(off).max() < 0.1
     assert (np.abs(off) < 3.0 * sigma).all() and (np.abs(bias - OFFSET) < 3.0 * bias_sigma).all()
@@ -44,8 +46,8 @@ def test_rests_that_are_some_say_what_the_sensor_is(astray):
     generator = np.random.default_rng(3)
     sizes = G + 0.003 * generator.standard_normal(24)
     sizes[:astray] += 0.5
-    matrix, bias, sigma, bias_sigma = own_calibration.by_norm(
-        means_of(generator.standard_normal((24, 3)), sizes), G)
+    at_rest = own_rests.by_norm(means_of(generator.standard_normal((24, 3)), sizes), G)
+    (matrix, bias), (sigma, bias_sigma) = own_rests.matrix_of(at_rest.p), at_rest.sigma
     assert np.abs(matrix @ MATRIX - np.eye(3)).max() < 0.002 and sigma.max() < 0.002
     assert np.abs(bias - OFFSET).max() < 0.01 and bias_sigma.max() < 0.01
 
@@ -54,9 +56,8 @@ def test_the_rests_fit_never_makes_them_less_likely():
     generator = np.random.default_rng(5)
     means = means_of(np.array([0.0, 0.0, 1.0]) + 0.4 * generator.standard_normal((7, 3)),
                      G * (1.0 + 0.04 * generator.standard_normal(7)))
-    prior = np.concatenate([np.full(6, 0.04), np.full(3, 0.8)])
     for scale in (0.005, 0.05, 0.5):
-        p, _, log = own_calibration.likeliest(np.zeros(9), means, G, scale, prior)
+        p, _, log = own_rests.likeliest(np.zeros(9), means, G, scale)
         off = (G - np.linalg.norm(means, axis=1)) / scale
         assert log >= -2.5 * np.log1p(off ** 2 / 4.0).sum() - 7 * np.log(scale)
 
@@ -81,7 +82,8 @@ def test_a_gyro_whose_moves_make_no_sense_is_not_known(scattered, scale, known):
     ups = np.array(ups) + scattered * off / np.linalg.norm(off, axis=1)[:, None]
     ups /= np.linalg.norm(ups, axis=1)[:, None]
     trace = SimpleNamespace(t=t, rests=tuple(rests))
-    gyro, sigma = own_calibration.by_carry(trace, rate * scale, ups, np.full(3, 0.001))
+    at_rest = own_rests.AtRest(G * ups, np.zeros(9), np.eye(9) * 1e-8)
+    _, gyro, sigma = own_calibration.by_carry(trace, rate * scale, at_rest)
     if known:
         assert sigma.max() < 0.01
         assert (np.abs(gyro - np.eye(3) / scale) < 4.0 * sigma).all()

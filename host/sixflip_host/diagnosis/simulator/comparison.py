@@ -23,6 +23,7 @@ from . import (
     simulator_answer,
     single_log,
     traces,
+    turned_in_box,
 )
 
 RAILED = 0.5  # share of a log at the end of its range: what is left of it is no motion any more
@@ -155,7 +156,12 @@ def compare_traces(real, sim, aligned):
         unseen = [*unseen, "whether a bias or how they lie makes %s and %s differ at rest, by "
                   "(%.0f, %.0f, %.0f) mg: each lies too much alike in all of its rests" % (
                       real.name, sim.name, *otherwise)]
-    numbers, of_numbers = numbers_of(real, sim, mended, own, fits, findings)
+    in_box, either = own, []
+    if not fits and None not in own:
+        turned, either = turned_in_box.as_the_box_says(real, mended, *own)
+        in_box = turned, own[1]
+    unseen = [*unseen, *either]
+    numbers, of_numbers = numbers_of(real, sim, mended, in_box, fits, findings)
     numbers, of_told, gap, wanders = numbers_told.gap(numbers, fits, together.unmended, real, sim)
     numbers += _of_range_and_time(logs, together, numbers, findings)
     findings += of_numbers + parameters.bias_sign(numbers)

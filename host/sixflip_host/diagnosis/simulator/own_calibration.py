@@ -11,30 +11,25 @@ import numpy as np
 
 from ...capture.attitude import carried, rotations
 from ..detect.wrong_scale import RANGES, SOUND_ACCEL
-from . import gravity_directions, log_rests, traces
+from . import gravity_directions, log_rests, own_rests, traces
 from .hypotheses import BIAS, SHAPE
 
 ROUNDS = 8  # Gauss-Newton steps of the moves' fit: after five the next change a matrix by 1e-9
-STEPS, SMALL = 60, 1e-6  # of the rests' fit at most; standard errors that ends it
-CARRY_RAD = np.radians(0.3)  # of a placement's tilt by handling, and of the attitude carried
-FREEDOM = 4.0  # of Student's t [Lange et al., J. Am. Stat. Assoc. 84 (1989), 881]
-MEDIAN_OF_TWO = np.log(2.0)  # of half the sum of two squares of unit variance
+# Of gravity carried over a move: 0.2 % of nonlinearity on half a turn [MPU-6000 PS, table 6.1].
+CARRY_RAD = np.radians(0.3)
+# Of Student's t [Lange et al., J. Am. Stat. Assoc. 84 (1989), 881], and of what is known of
+# CARRY_RAD before a look at the moves.
+FREEDOM = 4.0
 # Of what two logs read at rest, in g: standard errors between their means, and by how much a floor
 # leans, a degree.
 APART, LEANS = 4.0, 0.0175
 UNKNOWN = 0.9  # of its prior width: what a bias has that no rest tells
-NORM = 0.005  # m/s2: how well |force| repeats between rests, 0.5 mg with flicker and rounding
-# Times NORM, that |force| may repeat worse, doubled each time: to 0.5 g, where the windows are no
-# rests but pieces of a flight.
-WORSE = 2.0 ** np.arange(11)
-# Prior standard deviations beyond which a sensor is none: by 46 degrees another axis is nearer,
-# and 80 % of scale or 1.6 g of offset are a convention, or a fit to what are no rests.
-IMPOSSIBLE = 20.0
 
 
 @dataclass(frozen=True)
 class OwnSensor:
-    """true force = accel (force - bias), accel (3, 3) symmetric (its turn cannot be seen); true
+    """true force = accel (force - bias), accel (3, 3) symmetric (its turn cannot be seen) but for
+    what turned_in_box knows of it, turned (3,) rad; true
     rate = gyro (rate - bias at rest); sigmas of accel (3, 3), bias (3,), gyro (3, 3); gyro_bias
     (3,) rad/s with its sigma (infinite without a rest); flicker: that of its Trace; full_scale
     {sensor: how many times too large it reads by a full scale that its log does not state}."""
@@ -49,6 +44,7 @@ class OwnSensor:
     gyro_bias_sigma: np.ndarray
     flicker: dict
     full_scale: dict = field(default_factory=lambda: {"accel": 1.0, "gyro": 1.0})
+    turned: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
     def applied(self, trace):
         """The Trace as this sensor's true force and rate."""
@@ -70,22 +66,21 @@ def fitted(trace):
                          unknown, bias, np.full(3, np.inf), trace.flicker)
     means = trace.rest_means(trace.force)
     norms = np.linalg.norm(means, axis=1)
-    accel, bias = np.eye(3), np.zeros(3)
-    accel_sigma, bias_sigma = np.full((3, 3), SHAPE), np.full(3, BIAS["accel"])
-    full_scale = {"accel": 1.0, "gyro": 1.0}
+    at_rest, full_scale = own_rests.unknown(means), {"accel": 1.0, "gyro": 1.0}
     for times, near in ((1.0, 0.3), *((k, SOUND_ACCEL) for k in RANGES)):
         if np.all(np.abs(norms / times / trace.g - 1.0) < near):
-            accel, bias, accel_sigma, bias_sigma = by_norm(means / times, trace.g)
-            accel, accel_sigma = accel / times, accel_sigma / times
-            bias, bias_sigma, full_scale["accel"] = bias * times, bias_sigma * times, times
-    rate = trace.rate - traces.rest_line(trace, trace.rate)
-    ups = (means - bias) @ accel.T
-    ups /= np.maximum(np.linalg.norm(ups, axis=1), 1e-9)[:, None]
+            at_rest, full_scale["accel"] = own_rests.by_norm(means / times, trace.g), times
     gyro, gyro_sigma = np.eye(3), np.full((3, 3), SHAPE)
     if np.all(norms > 0.3 * trace.g):
+        rate = trace.rate - traces.rest_line(trace, trace.rate)
+        ups = np.array([own_rests.up_of(mean, at_rest.p)[0] for mean in at_rest.means])
         times = full_scale["gyro"] = gravity_directions.full_scale(trace, ups)
-        gyro, gyro_sigma = (x / times for x in by_carry(
-            trace, rate / times, ups, bias_sigma / full_scale["accel"] / trace.g))
+        at_rest, gyro, gyro_sigma = by_carry(trace, rate / times, at_rest)
+        gyro, gyro_sigma = gyro / times, gyro_sigma / times
+    (accel, bias), (accel_sigma, bias_sigma) = own_rests.matrix_of(at_rest.p), at_rest.sigma
+    times = full_scale["accel"]
+    accel, accel_sigma, bias, bias_sigma = (
+        accel / times, accel_sigma / times, bias * times, bias_sigma * times)
     biases = trace.rest_means(trace.rate)
     spread = biases.std(axis=0, ddof=1) / np.sqrt(len(biases)) if len(biases) > 2 else \
         np.hypot(0.001, trace.noise_of_rests("gyro"))
@@ -107,104 +102,26 @@ def lies_otherwise(real, sim, own_real, own_sim):
     return 1000.0 * off if (np.abs(off) > APART * scatter + LEANS).any() else None
 
 
-SYMMETRIC = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
+def by_carry(trace, rate, at_rest):
+    """(AtRest, gyro matrix (3, 3), its sigma (3, 3)) by gravity before and after each move.
 
-
-def by_norm(means, g):
-    """(matrix, bias, their sigmas) that make |matrix (mean - bias)| = g.
-
-    How well |force| repeats is not known either: it has a half-Cauchy prior about NORM [Gelman,
-    Bayesian Analysis 1 (2006), 515], and the answer is the mean over it by how likely each makes
-    the rests [Laplace's approximation: Bishop (2006), section 4.4]. Rests are weighed by Student's
-    t besides.
-    """
-    prior = np.concatenate([np.full(6, SHAPE), np.full(3, BIAS["accel"])])
-    p, logs, places, inverses = np.zeros(9), [], [], []
-    for worse in WORSE[::-1]:
-        p, gram, log = likeliest(p, means, g, NORM * worse, prior)
-        logs.append(log - 0.5 * np.linalg.slogdet(gram)[1] - np.log(worse + 1.0 / worse))
-        places.append(p)
-        inverses.append(np.linalg.inv(gram))
-    weights = np.exp(np.array(logs) - max(logs))
-    weights /= weights.sum()
-    p = weights @ places
-    apart = np.array(places) - p
-    covariance = np.einsum("k,kij->ij", weights, inverses) + (weights * apart.T) @ apart
-    spread = np.sqrt(np.diag(covariance))
-    if (np.abs(p) > IMPOSSIBLE * prior).any():
-        p, spread = np.zeros(9), prior
-    matrix, bias = matrix_of(p)
-    sigma = np.zeros((3, 3))
-    for k, (i, j) in enumerate(SYMMETRIC):
-        sigma[i, j] = sigma[j, i] = spread[k]
-    return matrix, bias, sigma, spread[6:]
-
-
-def likeliest(p, means, g, scale, prior):
-    """(parameters (9,), their information (9, 9), log posterior but for a constant) where |force|
-    repeats to so much (m/s2); by steps from p that are shortened until they make it likelier
-    [Levenberg, Q. Appl. Math. 2 (1944), 164]."""
-    def looked_at(p):
-        matrix, bias = matrix_of(p)
-        true = (means - bias) @ matrix.T
-        size = np.linalg.norm(true, axis=1)
-        unit = true / np.maximum(size, 1e-9)[:, None]
-        jacobian = np.empty((len(means), 9))
-        for k, (i, j) in enumerate(SYMMETRIC):
-            change = np.zeros((3, 3))
-            change[i, j] = change[j, i] = 1.0
-            jacobian[:, k] = (unit * ((means - bias) @ change.T)).sum(axis=1)
-        jacobian[:, 6:] = -unit @ matrix
-        off = (g - size) / scale
-        log = -0.5 * (FREEDOM + 1.0) * np.log1p(off ** 2 / FREEDOM).sum() - len(off) * np.log(
-            scale) - 0.5 * ((p / prior) ** 2).sum()
-        return jacobian / scale, off, log
-
-    jacobian, off, log = looked_at(p)
-    damping = 1e-3
-    for _ in range(STEPS):
-        weight = (FREEDOM + 1.0) / (FREEDOM + off ** 2)
-        gram = (jacobian.T * weight) @ jacobian + np.diag(prior ** -2.0)
-        step = np.linalg.solve(gram + damping * np.diag(np.diag(gram)),
-                               jacobian.T @ (weight * off) - p / prior ** 2)
-        tried = looked_at(p + step)
-        if tried[2] < log:
-            damping *= 10.0
-        else:
-            p, damping = p + step, damping / 10.0
-            jacobian, off, log = tried
-        if step @ gram @ step < SMALL ** 2 or damping > 1e12:
-            break
-    # What Student's t says of its place on average [Lange et al. (1989), section 4].
-    known = (FREEDOM + 1.0) / (FREEDOM + 3.0)
-    return p, known * jacobian.T @ jacobian + np.diag(prior ** -2.0), log
-
-
-def matrix_of(p):
-    """((3, 3) symmetric matrix, (3,) bias) of nine parameters, zero for a sensor without error."""
-    matrix = np.eye(3)
-    for value, (i, j) in zip(p, SYMMETRIC):
-        matrix[i, j] += value
-        if i != j:
-            matrix[j, i] += value
-    return matrix, p[6:]
-
-
-def by_carry(trace, rate, ups, tilt):
-    """(matrix (3, 3), sigma (3, 3)) of the gyro by gravity before and after each move.
-
-    tilt (3,): how far the direction of gravity in the sensor may be off, the same at every rest,
-    since a log whose rests lie alike does not show the accelerometer's bias; it turns with the
-    robot and would pass for a scale of the gyro. Over bumps the samples lie too far apart: how
-    much that matters is what every second of them makes of the same move. Moves are weighed by
+    What AtRest leaves open of the accelerometer, of six faces all of its misalignment, and of
+    rests that lie alike its bias, turns gravity at every rest and would pass for the gyro's: it is
+    fitted with the gyro's matrix, and so known better. Over bumps the samples lie too far apart:
+    how much that matters is what every second of them makes of the same move. Moves are weighed by
     Student's t besides.
     """
-    coarse = [CARRY_RAD + astray(trace, rate, ups[k], k) for k in range(len(trace.rests) - 1)]
-    prior = np.concatenate([np.full(9, SHAPE), np.maximum(tilt, 1e-6)])
-    p, wider = np.zeros(12), 1.0
+    accel, gyro, wider = at_rest.p, np.zeros(9), 1.0
+    prior = np.zeros((18, 18))
+    prior[:9, :9] = np.linalg.inv(at_rest.covariance)
+    prior[9:, 9:] = np.eye(9) * SHAPE ** -2.0
+    coarse = [CARRY_RAD + astray(trace, rate, own_rests.up_of(at_rest.means[k], accel)[0], k)
+              for k in range(len(trace.rests) - 1)]
     for _ in range(ROUNDS):
-        matrix = np.eye(3) + p[:9].reshape(3, 3)
-        gram, right, off = np.diag(prior ** -2.0), -p / prior ** 2, []
+        matrix = np.eye(3) + gyro.reshape(3, 3)
+        ups, slopes = zip(*[own_rests.up_of(mean, accel) for mean in at_rest.means])
+        gram, off = prior.copy(), []
+        right = -prior @ np.concatenate([accel - at_rest.p, gyro])
         for k in range(len(trace.rests) - 1):
             first, last = trace.rests[k][1] - 1, trace.rests[k + 1][0]
             true = rate[first:last + 1] @ matrix.T
@@ -214,27 +131,29 @@ def by_carry(trace, rate, ups, tilt):
             raw = 0.5 * (rate[first + 1:last + 1] + rate[first:last]) * dt
             # d(turn) = sum over samples of R(t) dM w dt, in the frame of the start
             spread = np.einsum("nij,nk->ijk", turns[:-1], raw).reshape(3, 9)
-            before, after = ups[k] + p[9:], ups[k + 1] + p[9:]
-            x, y, z = before
+            x, y, z = ups[k]
             cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-            jacobian = np.hstack([cross @ spread, np.eye(3) - turns[-1]])
-            left = turns[-1] @ after - before
+            jacobian = np.hstack([slopes[k] - turns[-1] @ slopes[k + 1], cross @ spread])
+            left = turns[-1] @ ups[k + 1] - ups[k]
             if np.linalg.norm(left) > 0.5:
                 continue  # a convention, not a parameter
-            size = (left ** 2).sum() / 2.0 / coarse[k] ** 2
-            weight = (FREEDOM + 2.0) / (FREEDOM + 2.0 * size / wider ** 2) / (
-                wider * coarse[k]) ** 2
-            off.append(size)
+            square = (left ** 2).sum() / coarse[k] ** 2
+            heard = (FREEDOM + 2.0) / (FREEDOM + square / wider ** 2)
+            off.append(heard * square)
+            weight = heard / (wider * coarse[k]) ** 2
             gram += weight * jacobian.T @ jacobian
             right += weight * jacobian.T @ left
-        p = p + np.linalg.solve(gram, right)
-        # Where gravity is carried worse than that, the intervals are as much wider.
-        if off:
-            wider = max(1.0, np.sqrt(np.median(off) / MEDIAN_OF_TWO))
-    spread = np.sqrt(np.diag(np.linalg.inv(gram)))
-    if (np.abs(p[:9]) > IMPOSSIBLE * SHAPE).any():
-        p, spread = np.zeros(12), prior
-    return np.eye(3) + p[:9].reshape(3, 3), spread[:9].reshape(3, 3)
+        covariance = np.linalg.inv(gram)
+        step = covariance @ right
+        accel, gyro = accel + step[:9], gyro + step[9:]
+        # How well gravity is carried is told by what the numbers leave, less what they take up
+        # [inverse gamma prior: Gelman et al., Bayesian Data Analysis (2013), section 2.6].
+        taken = len(gram) - np.trace(covariance @ prior)
+        wider = np.sqrt((FREEDOM + sum(off)) / (FREEDOM + max(2.0 * len(off) - taken, 0.0)))
+    if (np.abs(gyro) > own_rests.IMPOSSIBLE * SHAPE).any():
+        return at_rest, np.eye(3), np.full((3, 3), SHAPE)
+    return own_rests.AtRest(at_rest.means, accel, covariance[:9, :9]), np.eye(
+        3) + gyro.reshape(3, 3), np.sqrt(np.diag(covariance)[9:]).reshape(3, 3)
 
 
 def astray(trace, rate, up, k):

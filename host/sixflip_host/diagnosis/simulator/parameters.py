@@ -149,7 +149,7 @@ def shapes(real, sim, fits, usable, rounded=None, beside=False):
                 # Along one line a channel that is across it and reads nothing tells how it lies.
                 if across[j] or not told[i] and (i == j or not across[i]):
                     continue
-                if fit is None and kind == "accel" and i > j:
+                if fit is None and kind == "accel" and i > j and not real.turned.any():
                     continue  # a turn of the whole accelerometer cannot be seen by rests alone
                 numbers.append(compared("scale" if i == j else "misalignment", kind,
                                         "xyz"[i] + ("" if i == j else "xyz"[j]),
