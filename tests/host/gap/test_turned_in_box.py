@@ -2,10 +2,7 @@
 sensor's misalignment, and which of the two is turned in its box."""
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
-from sixflip.poses import faces
-from sixflip_host.capture.capture import Capture
 from sixflip_host.diagnosis.simulator import (
     comparison,
     own_calibration,
@@ -13,8 +10,8 @@ from sixflip_host.diagnosis.simulator import (
     traces,
     turned_in_box,
 )
+from tests.worlds import guided
 
-G, RATE_HZ = 9.80665, 100.0
 OFF = ~np.eye(3, dtype=bool)
 
 
@@ -24,43 +21,8 @@ def turn_of(degrees, axis):
     return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 
 
-def session(seed, accel=0.0, gyro=0.0, labels=True):
-    """Trace of six faces, each laid down and turned once by half a turn by a hand that leans it on
-    its way, of a table that leans; sensors that read (1 + accel) force, (1 + gyro) rate."""
-    generator = np.random.default_rng(seed)
-    table = Rotation.from_rotvec(np.radians([*generator.normal(0.0, 1.0, 2), 0.0]))
-    attitudes, poses = [], []
-    for face in range(6):
-        up = faces.SIGN[face] * np.eye(3)[faces.AXIS[face]]
-        lying = Rotation.align_vectors([[0.0, 0.0, 1.0]], [up])[0]
-        for half in range(2):
-            heading = generator.normal(np.pi * half, 0.01)
-            attitudes.append(table * Rotation.from_rotvec([0.0, 0.0, heading]) * lying)
-            poses.append(1 + 2 * face + half)
-    way, labelled = [], []
-    for k, (here, pose) in enumerate(zip(attitudes, poses)):
-        way += [here] * 300
-        labelled += [pose] * 300
-        if k + 1 < len(attitudes):
-            whole = (attitudes[k + 1] * here.inv()).as_rotvec()
-            lean = generator.normal(0.0, 0.2, 3)
-            for share in (1.0 - np.cos(np.pi * np.arange(150) / 150.0)) / 2.0:
-                lifted = Rotation.from_rotvec(np.sin(np.pi * share) ** 2 * lean)
-                way.append(lifted * Rotation.from_rotvec(share * whole) * here)
-            labelled += [0] * 150
-    attitude = Rotation.from_quat([x.as_quat() for x in way])
-    steps = (attitude[:-1].inv() * attitude[1:]).as_rotvec() * RATE_HZ
-    rate = 0.5 * (np.vstack([steps[:1], steps]) + np.vstack([steps, steps[-1:]]))
-    force = attitude.inv().apply([0.0, 0.0, 1.0])
-    meta = {"sensor": "mpu6050", "rate_hz": RATE_HZ, "g": G, "accel_lsb_per_g": 16384,
-            "gyro_lsb_per_dps": 65.5}
-    counts = [16384 * (force @ (np.eye(3) + accel).T + generator.normal(0.0, 0.004, force.shape)),
-              65.5 * (np.degrees(rate) @ (np.eye(3) + gyro).T
-                      + generator.normal(0.0, 0.05, rate.shape))]
-    capture = Capture(meta, (np.arange(len(force)) * 1e6 / RATE_HZ).astype(np.int64),
-                      *[np.clip(np.round(x), -32768, 32767).astype(np.int16) for x in counts],
-                      pose=np.array(labelled, np.int16) if labels else None)
-    return traces.trace_from_capture("log %d" % seed, capture)
+def session(seed, **of_sensors):
+    return traces.trace_from_capture("log %d" % seed, guided.session(seed, **of_sensors))
 
 
 def misaligned(real, sim):
@@ -83,7 +45,7 @@ def test_six_faces_and_their_moves_say_how_both_sensors_are_misaligned(seed):
     none of the gyro's (half a degree of it passed for a gyro's, with intervals of 0.15)."""
     generator = np.random.default_rng(seed)
     accel, gyro = random_misalignment(generator), random_misalignment(generator)
-    own = own_calibration.fitted(session(100 + seed, accel, gyro))
+    own = own_calibration.fitted(session(100 + seed, accel=accel, gyro=gyro))
     # The accelerometer's own frame: measured = symmetric · turn · force.
     left, sizes, right = np.linalg.svd(np.eye(3) + accel)
     of_accel = np.linalg.inv((left * sizes) @ left.T) - own.accel
@@ -97,7 +59,8 @@ def test_six_faces_and_their_moves_say_how_both_sensors_are_misaligned(seed):
 def test_a_right_simulator_of_other_hands_is_not_accused(seed):
     generator = np.random.default_rng(seed)
     accel, gyro = random_misalignment(generator), random_misalignment(generator)
-    said, unseen = misaligned(session(200 + seed, accel, gyro), session(300 + seed, accel, gyro))
+    said, unseen = misaligned(*(
+        session(first + seed, accel=accel, gyro=gyro) for first in (200, 300)))
     assert not said and not unseen
 
 

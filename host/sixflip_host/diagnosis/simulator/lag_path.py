@@ -54,13 +54,15 @@ class Line:
 @dataclass(frozen=True)
 class Fitted:
     """A Line; sigma (k,): of its sizes; left (n, 3); turn (4, 3): the simulator's rates by the
-    real ones and 1; cost: nats of what is free in it."""
+    real ones and 1; cost: nats of what is free in it; found: share of what turns a log, of that of
+    which it is more, in the rows by which it was fitted."""
 
     line: Line
     sigma: np.ndarray
     left: np.ndarray
     turn: np.ndarray
     cost: float
+    found: float
 
     @property
     def power(self):
@@ -219,8 +221,10 @@ def fitted(logs, line, wanders=False):
         size, sigma = size + inverse @ against, np.sqrt(np.diag(inverse).clip(0.0))[2:2 + jumps]
         line = replace(line, offset=size[0], drift=size[1], sizes=size[2:2 + jumps],
                        wander=size[2 + jumps:])
+    found = max((y[keep] ** 2).sum() / (y ** 2).sum(),
+                THINNED * (signal ** 2).sum() / (logs.real ** 2).sum())
     return Fitted(line, sigma, left, turn[[0, 1, 2, -1]],
-                  of_walk + jumps * np.log(len(t) * REACH_S[0] * GRID_HZ))
+                  of_walk + jumps * np.log(len(t) * REACH_S[0] * GRID_HZ), float(found))
 
 
 def _hats(t, number):
