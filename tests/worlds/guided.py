@@ -9,10 +9,11 @@ from sixflip_host.capture.capture import Capture
 G, RATE_HZ = 9.80665, 100.0
 
 
-def session(seed, accel=0.0, gyro=0.0, labels=True, rest_s=3.0, lean=0.2):
+def session(seed, accel=0.0, gyro=0.0, labels=True, rest_s=3.0, lean=0.2,
+            limit_dps=500.0):
     """Capture of six faces, each laid down for about rest_s and turned once by half a turn by a
     hand that leans it on its way, by so many rad, on a table that leans; sensors that read
-    (1 + accel) force, (1 + gyro) rate."""
+    (1 + accel) force, (1 + gyro) rate, this up to a limit."""
     generator = np.random.default_rng(seed)
     table = Rotation.from_rotvec(np.radians([*generator.normal(0.0, 1.0, 2), 0.0]))
     attitudes, poses = [], []
@@ -42,9 +43,9 @@ def session(seed, accel=0.0, gyro=0.0, labels=True, rest_s=3.0, lean=0.2):
     force = attitude.inv().apply([0.0, 0.0, 1.0])
     meta = {"sensor": "mpu6050", "rate_hz": RATE_HZ, "g": G, "accel_lsb_per_g": 16384,
             "gyro_lsb_per_dps": 65.5}
-    counts = [16384 * (force @ (np.eye(3) + accel).T + generator.normal(0.0, 0.004, force.shape)),
-              65.5 * (np.degrees(rate) @ (np.eye(3) + gyro).T
-                      + generator.normal(0.0, 0.05, rate.shape))]
+    force = force @ (np.eye(3) + accel).T + generator.normal(0.0, 0.004, force.shape)
+    rate = np.degrees(rate) @ (np.eye(3) + gyro).T + generator.normal(0.0, 0.05, rate.shape)
+    counts = [16384 * force, 65.5 * np.clip(rate, -limit_dps, limit_dps)]
     return Capture(meta, (np.arange(len(force)) * 1e6 / RATE_HZ).astype(np.int64),
                    *[np.clip(np.round(x), -32768, 32767).astype(np.int16) for x in counts],
                    pose=np.array(labelled, np.int16) if labels else None)

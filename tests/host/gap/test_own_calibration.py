@@ -81,7 +81,7 @@ def test_a_gyro_whose_moves_make_no_sense_is_not_known(scattered, scale, known):
     off = generator.standard_normal((len(ups), 3))
     ups = np.array(ups) + scattered * off / np.linalg.norm(off, axis=1)[:, None]
     ups /= np.linalg.norm(ups, axis=1)[:, None]
-    trace = SimpleNamespace(t=t, rests=tuple(rests))
+    trace = SimpleNamespace(t=t, rests=tuple(rests), rate=rate * scale)
     at_rest = own_rests.AtRest(G * ups, np.zeros(9), np.eye(9) * 1e-8)
     _, gyro, sigma = own_calibration.by_carry(trace, rate * scale, at_rest)
     if known:

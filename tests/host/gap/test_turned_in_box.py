@@ -3,6 +3,7 @@ sensor's misalignment, and which of the two is turned in its box."""
 import numpy as np
 import pytest
 
+from sixflip_host.diagnosis.detect import wrong_scale
 from sixflip_host.diagnosis.simulator import (
     comparison,
     own_calibration,
@@ -10,6 +11,7 @@ from sixflip_host.diagnosis.simulator import (
     traces,
     turned_in_box,
 )
+from sixflip_host.experiment import blocks
 from tests.worlds import guided
 
 OFF = ~np.eye(3, dtype=bool)
@@ -95,3 +97,12 @@ def test_the_faces_measure_a_turn_against_their_box():
     assert np.degrees(measured) == pytest.approx([0.0, 0.6, 0.0], abs=0.1)
     assert np.degrees(sigma).max() < 0.06
     assert parameters.DIFFERS * sigma.max() < np.radians(0.6)
+
+
+@pytest.mark.parametrize("limit_dps", [60.0, 100.0])
+def test_moves_in_which_the_gyro_was_cut_off_say_nothing_of_its_scale(limit_dps):
+    """A scale of -10 +- 2 % of one that is right, and "turns 0.608 times as far as gravity"."""
+    capture = guided.session(1100, limit_dps=limit_dps)
+    own = own_calibration.fitted(traces.trace_from_capture("log", capture))
+    assert (np.abs(own.gyro - np.eye(3)) < 3.0 * own.gyro_sigma).all()
+    assert wrong_scale.findings([blocks.session_of("log", capture)]) == []

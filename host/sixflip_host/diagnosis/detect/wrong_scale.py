@@ -11,9 +11,9 @@ import numpy as np
 
 from sixflip.poses import faces
 
-from ...capture import registers
 from ...capture.find_poses import NO_GRAVITY
 from ...capture.imports import gravity, gyro_unit
+from . import saturation
 from .detection import Damage, present
 
 SOUND_ACCEL = 0.1  # of |a|: ±80 mg of offset and 3 % of scale [MPU-6000 PS rev 3.4, table 6.2]
@@ -157,12 +157,10 @@ def _between_pauses(session):
     moves that turn gravity from one pause to the next, MOST_MOVES of them, evenly."""
     capture, m = session.capture, max(4, round(PAUSE_S * session.rate))
     n = len(capture.accel) // m
-    if n < 3:
-        return []
     a, w = (values[:n * m].reshape(n, m, 3) / capture.meta[lsb] for values, lsb in (
         (capture.accel, "accel_lsb_per_g"), (capture.gyro, "gyro_lsb_per_dps")))
     quiet = np.sqrt(a.var(axis=1).max(axis=1)) < PAUSE_G
-    if quiet.sum() < 2:
+    if n < 3 or quiet.sum() < 2:
         return []
     bias = np.median(w[quiet].mean(axis=1), axis=0)
     turning = np.sqrt(((w - bias) ** 2).sum(axis=2).mean(axis=1))
@@ -171,11 +169,11 @@ def _between_pauses(session):
     up /= np.maximum(np.linalg.norm(up, axis=1), 1e-9)[:, None]
     pairs = [(k, j) for k, j in zip(pauses, pauses[1:])
              if 1 < j - k <= LONGEST_S / PAUSE_S and up[k] @ up[j] < TURNED]
-    moves = []
+    moves, cut = [], saturation.railed(session, "gyro")
     for k, j in pairs[::-(-max(len(pairs), 1) // MOST_MOVES)]:
         first, end = k * m + m // 2, j * m + m // 2
         dt = np.diff(session.t_s[first:end + 1])
-        if dt.max() > HOLE * np.median(dt) or registers.gyro_railed(capture, first, end):
+        if dt.max() > HOLE * np.median(dt) or cut[first:end].any():
             continue
         rates = capture.gyro[first:end] / capture.meta["gyro_lsb_per_dps"]
         rates = rates - 0.5 * (w[k].mean(axis=0) + w[j].mean(axis=0))
@@ -223,13 +221,14 @@ def _product(p, q):
 def _by_flips(session):
     """[(factor, relative width)] of half turns about a face's axis that labels tell; with whole
     circles more they are an odd number of halves, which no range makes of one."""
-    factors, capture = [], session.capture
     if not session.labelled:
         return []
-    rates = capture.gyro / capture.meta["gyro_lsb_per_dps"]
+    factors, cut = [], saturation.railed(session, "gyro")
+    rates = session.capture.gyro / session.capture.meta["gyro_lsb_per_dps"]
     for before, after in zip(session.runs, session.runs[1:]):
         face = faces.face_of_code(before.code)
-        if face < 0 or face != faces.face_of_code(after.code) or before.code == after.code:
+        same_face = face >= 0 and face == faces.face_of_code(after.code)
+        if not same_face or before.code == after.code or cut[before.end:after.first].any():
             continue
         bias = 0.5 * (rates[before.first:before.end].mean(axis=0)
                       + rates[after.first:after.end].mean(axis=0))

@@ -6,7 +6,7 @@ alignment, motion_match, lag_path, clock_course, pairing
                                     two logs of one motion on one clock and one grid
 one_motion, hypotheses, sensor_axes, evidence_of_logs, conventions, convention_findings
                                    layer 1: what the simulator's numbers mean, by the same motion
-own_calibration, own_motion, own_consistency, gravity_directions
+own_rests, own_calibration, turned_in_box, own_motion, own_consistency, gravity_directions
                                    layer 1 where the motions differ: each log by its own rests
 parameters, noise_and_registers, shaking, numbers_told
                                    layer 2: the numbers to set, and what they close of the gap

@@ -7,7 +7,7 @@ import numpy as np
 from ...capture.attitude import carried, rotation_between, rotations
 from .. import odds
 from ..detect.wrong_scale import RANGES
-from . import traces
+from . import single_log, traces
 from .convention_findings import CERTAIN
 from .sensor_axes import DEAD
 
@@ -25,13 +25,16 @@ HEADINGS = 48  # each 7.5 degrees: within SIGMA of the true one
 
 
 def moves(trace):
-    """[(rest before, rest after, increments (k, 3) rad)] of the gyro, in short steps."""
+    """[(rest before, rest after, increments (k, 3) rad)] of the gyro, in short steps, of moves in
+    which it does not stand at its limit: it turned farther than it says then."""
     if trace.rate is None:
         return []
     rate = trace.rate - traces.rest_line(trace, trace.rate)
-    ways = []
+    ways, cut = [], single_log.at_limit(trace.rate)
     for k in range(len(trace.rests) - 1):
         first, last = trace.rests[k][1] - 1, trace.rests[k + 1][0]
+        if cut[first:last].any():
+            continue
         dt = np.diff(trace.t[first:last + 1])[:, None]
         steps = 0.5 * (rate[first:last] + rate[first + 1:last + 1]) * dt
         group = max(1, int(trace.rate_hz / STEPS_HZ))

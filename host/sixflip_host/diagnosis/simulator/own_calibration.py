@@ -11,7 +11,7 @@ import numpy as np
 
 from ...capture.attitude import carried, rotations
 from ..detect.wrong_scale import RANGES, SOUND_ACCEL
-from . import gravity_directions, log_rests, own_rests, traces
+from . import gravity_directions, log_rests, own_rests, single_log, traces
 from .hypotheses import BIAS, SHAPE
 
 ROUNDS = 8  # Gauss-Newton steps of the moves' fit: after five the next change a matrix by 1e-9
@@ -109,8 +109,9 @@ def by_carry(trace, rate, at_rest):
     rests that lie alike its bias, turns gravity at every rest and would pass for the gyro's: it is
     fitted with the gyro's matrix, and so known better. Over bumps the samples lie too far apart:
     how much that matters is what every second of them makes of the same move. Moves are weighed by
-    Student's t besides.
+    Student's t besides; one in which the gyro stands at its limit turned farther than it says.
     """
+    cut = single_log.at_limit(trace.rate)
     accel, gyro, wider = at_rest.p, np.zeros(9), 1.0
     prior = np.zeros((18, 18))
     prior[:9, :9] = np.linalg.inv(at_rest.covariance)
@@ -124,6 +125,8 @@ def by_carry(trace, rate, at_rest):
         right = -prior @ np.concatenate([accel - at_rest.p, gyro])
         for k in range(len(trace.rests) - 1):
             first, last = trace.rests[k][1] - 1, trace.rests[k + 1][0]
+            if cut[first:last].any():
+                continue
             true = rate[first:last + 1] @ matrix.T
             dt = np.diff(trace.t[first:last + 1])[:, None]
             middle = 0.5 * (true[1:] + true[:-1])

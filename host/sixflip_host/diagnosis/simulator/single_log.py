@@ -125,6 +125,12 @@ def limit(x):
     return float(size[at].min()) if stops else None
 
 
+def at_limit(values):
+    """(n,): rows of values (n, 3) in which a channel stands at its limit."""
+    return np.any([np.abs(x) >= (np.inf if end is None else end)
+                   for x, end in zip(values.T, map(limit, values.T))], axis=0)
+
+
 def rounding(kind, logs, number, band_hz):
     """(number, 3) of as much noise as the rounding of both logs leaves in the band: two that were
     made of the same samples, and one that has no noise, which rounds what is slow the same way

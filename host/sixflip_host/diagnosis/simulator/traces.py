@@ -107,12 +107,8 @@ def _railed(counts):
     """(n,): samples at which a channel stands at the end of what it can say. By its readings
     alone: a simulator may stop elsewhere than at the range that its header states, by which
     detect.saturation goes."""
-    railed = (np.abs(counts.astype(int)) >= RAIL).any(axis=1)  # however short the peak
-    for i in range(3):
-        end = single_log.limit(counts[:, i].astype(float))
-        if end is not None:
-            railed |= np.abs(counts[:, i].astype(float)) >= end
-    return railed
+    at_end = (np.abs(counts.astype(int)) >= RAIL).any(axis=1)  # however short the peak
+    return at_end | single_log.at_limit(counts.astype(float))
 
 
 @dataclass(frozen=True)
