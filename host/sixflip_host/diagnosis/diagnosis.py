@@ -208,6 +208,10 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
     if comparisons:
         # Where readings are cut off is a range, which the parameters of both logs compare.
         findings = [f for f in findings if f.effect != "saturation"]
+        # What all readings are too large by is a scale, which is no gap where both share it.
+        scaled = {p.sensor for c in comparisons for p in c.parameters if p.name == "scale"}
+        nameless = [place for place in nameless if not (
+            place.sensor in scaled and place in samples.of_scales)]
     if compared_in_motion:
         # The two logs were compared in motion: what the hand or both do is no gap.
         findings = [f for f in findings if f.domain != "motion" or f.effect in lacking]

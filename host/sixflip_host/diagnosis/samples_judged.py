@@ -76,6 +76,11 @@ class SamplesJudged:
         """True when all that the accelerometer reads is of another scale."""
         return any(d.sensor == "accel" and d.kind in SCALES for d in self.damages)
 
+    @property
+    def of_scales(self):
+        """[Place] of what makes all that a sensor reads too large or too small."""
+        return [_place(d, None) for d in self.damages if d.kind in SCALES]
+
     def conditions(self, reference_c):
         """settings.Conditions that hold for the rests of the same captures."""
         coarse = any(f.sensor == "accel" and f.effect in COARSE for f in self.findings)
@@ -132,9 +137,7 @@ def judge(sessions, settings=ALONE, damages=()):
     nameless = [localisation.Place(sensor, None, "noise", 1.0, p) for sensor, p in noise.items()]
     nameless += [localisation.Place(sensor, axis, "time_since_move", 1.0, odds.chance(nats))
                  for sensor, axis, _, nats in rings]
-    nameless += [localisation.Place(damage.sensor, axis, damage.domain, 1.0,
-                                    odds.chance(damage.score))
-                 for damage in left for axis in damage.axes or (None,)]
+    nameless += [_place(damage, axis) for damage in left for axis in damage.axes or (None,)]
     nameless += [localisation.Place(sensor, axis, "amplitude", 1.0, odds.chance(nats))
                  for sensor, axis, nats in [*((*bit[:2], bit[-1]) for bit in bits), *uneven]]
     remarks += ["the %s axis of the %s reads some codes hardly ever and others too often"
@@ -152,6 +155,11 @@ def judge(sessions, settings=ALONE, damages=()):
     return SamplesJudged(sessions, tuple(findings), tuple(damages), tuple(nameless),
                          (*remarks, *(words for _, words, _ in unsteady),
                           *noise_shape.in_common(without_spikes, noisy)))
+
+
+def _place(damage, axis):
+    """Place of a Damage on an axis, or on all of them."""
+    return localisation.Place(damage.sensor, axis, damage.domain, 1.0, odds.chance(damage.score))
 
 
 def _without_bands(session, findings):

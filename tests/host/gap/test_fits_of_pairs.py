@@ -93,6 +93,29 @@ def test_a_gyro_that_reads_a_part_is_told_by_the_rests_of_the_simulator(share):
         if (p.name, p.sensor) == ("scale", "gyro"))
 
 
+@pytest.mark.parametrize("share", [0.5, 0.444, 0.7, 2.0])
+def test_a_scale_that_both_gyros_share_accuses_no_simulator_of_a_time_step(share):
+    """Of two logs of the same rates one was told to divide by another time step, with a
+    probability of 1: what both turn too little or too far is no difference between them."""
+    t, force, rate = tumbled(3, 80.0)
+    found = compared(read(t, force, share * rate, 1), read(t, force, share * rate, 101))
+    assert found.conventions == () and not found.differs
+
+
+def test_a_scale_that_both_gyros_share_is_no_gap():
+    t, force, rate = tumbled(3, 80.0)
+    logs = [read(t, force, 2.0 * rate, seed) for seed in (1, 101)]
+    said = diagnose.diagnose([("real", logs[0])], [("sim", logs[1])], jobs=1)
+    assert [d.value["factor"] for d in said.damages] == [pytest.approx(2.0, abs=0.05)]
+    assert said.verdict == "no gap"
+
+
+def test_nor_does_one_that_gyros_of_different_motions_share():
+    (t, force, rate), (at, pulled, turned) = tumbled(3, 80.0), tumbled(5, 80.0)
+    found = compared(read(t, force, 0.5 * rate, 1), read(at, pulled, 0.5 * turned, 101))
+    assert not found.alignment.same and found.conventions == () and not found.differs
+
+
 def test_a_time_step_is_told_where_the_rests_of_the_simulator_show_it():
     t, force, rate = tumbled(3, 80.0)
     found = compared(read(t, force, rate, 1), read(t, force, 0.5 * rate, 101))

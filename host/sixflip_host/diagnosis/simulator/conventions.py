@@ -70,13 +70,13 @@ class SensorFit:
         return float(len(self.pair.t) / self.inflation * self.live.sum() * -np.log(weaker))
 
 
-def same_motion(real, sim, alignment, motion, live, fresh_hz, full_scale):
-    """{sensor: SensorFit} of two aligned Traces; full_scale of the real one's OwnSensor; live
+def same_motion(real, sim, alignment, motion, live, fresh_hz, own_real):
+    """{sensor: SensorFit} of two aligned Traces; own_real: the real one's OwnSensor; live
     {sensor: (3,)}: channels that change."""
     sensor_fits, swapped, said = {}, None, ()
     for kind in ("accel", "gyro"):
         if live[kind].any():
-            rest = motion, live[kind], fresh_hz[kind], full_scale[kind], swapped, said
+            rest = motion, live[kind], fresh_hz[kind], own_real, swapped, said
             sensor_fits[kind] = motion_match.in_step(
                 lambda aligned, kind=kind, rest=rest: one_sensor(kind, real, sim, aligned, *rest),
                 kind, real, sim, alignment)
@@ -86,10 +86,11 @@ def same_motion(real, sim, alignment, motion, live, fresh_hz, full_scale):
     return sensor_fits
 
 
-def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, full_scale, *other):
+def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, own_real, *other):
     """SensorFit of one sensor; other: what is known of the other one, see prior()."""
     swapped = other[0] if other else None
     noise, theirs = (log.noise[kind] for log in (real, sim))
+    full_scale = own_real.full_scale[kind]
 
     def asked(pair):
         values, measured = pair.real(kind), pair.simulated(kind)
@@ -107,6 +108,9 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, full_scale, *
                                                      pairing.shaken(left, heard, values)))
         tried = [replace(h, full_scale=full_scale)
                  for h in made(values / full_scale, pair.motion, real.g)]
+        if full_scale != 1.0:  # it may be that of the simulator's log as well
+            tried.insert(0, hypotheses.Hypothesis(
+                "healthy", values, *hypotheses.none(len(values)), shared=True))
         return pair, measured, tried, evidence_of_logs.bends(left, pairing.GRID_HZ)
 
     pair, measured, tried, noise_bends = asked(pairing.paired(real, sim, alignment, motion))
@@ -148,7 +152,8 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, full_scale, *
     # suit it leave the others none, so they are asked by their own before it is believed.
     for likely in every[:1] if first.name else [first, next(f for f in every if f.name)]:
         own = sized(effects, lambda s, f=likely: whole(f, inflation, rows, s, left=False).log)
-        fits = [gravity_directions.beside(kind, fit, real, sim) for fit in judged(inflation, rows)]
+        fits = [gravity_directions.beside(kind, fit, real, sim, own_real.turns)
+                for fit in judged(inflation, rows)]
         best = best_of(fits)
         if doubt := best.fit.name and numbers_told.doubted(best, known):
             return kept((convention_findings.one_of(kind, (), *doubt),),

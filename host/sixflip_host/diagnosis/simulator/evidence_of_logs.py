@@ -124,7 +124,7 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
     log -= live.sum() * n / inflation * np.log(unit) + HEADING * h.heading
     if h.name:
         log += of_factors(np.diag(beta[:, :3])[live], np.diag(widths[:, :3])[live],
-                          h.name == "healthy" and unit == 1.0)
+                          h.name == "healthy" and unit == 1.0 and not h.shared)
     return Fit(h, h.name, log, beta[:, 3] * unit, axes, unit, shared[:k], sigma[:k], delay,
                float(sigma[k]), float(shared[k + 1]), float(sigma[k + 1]),
                (np.eye(3) + beta[:, :3]) / h.full_scale - np.eye(3),
@@ -137,7 +137,7 @@ def of_factors(scale, width, odd):
     such widths (k,): a scale is a factor, and half is as far from 1 as twice is. A unit or a wrong
     time step that the scale takes back would lie within some widths of it otherwise, whatever the
     factor. odd: the part may read any factor of all that it went through, as one whose full scale
-    or header is wrong does, where nothing of the simulator's is."""
+    or header is wrong does, where nothing of the simulator's is and it does not share it."""
     factor = np.log(np.maximum(1.0 + scale, LEAST_FACTOR))
     known = width ** -2.0
     sound, widest = -0.5 * float(factor ** 2 @ known), np.log(WIDEST)

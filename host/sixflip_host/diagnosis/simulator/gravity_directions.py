@@ -89,20 +89,30 @@ def full_scale(trace, ups):
     return likeliest if chances[likeliest] > CERTAIN else 1.0
 
 
-def beside(kind, fit, real, sim):
+def beside(kind, fit, real, sim, real_turns):
     """The Fit of a gyro with what the rests of each Trace by itself say of it: one that turns as
-    far as its gravity does has no wrong time step, or reads no part of what it went through."""
+    far as its gravity does has no wrong time step, or reads no part of what it went through.
+    real_turns: how many times as far as gravity the real one turns; what the simulator's shares
+    with it is wrong in both, and no gap."""
     if kind != "gyro" or fit.name not in ("healthy", "time_step"):
         return fit
-    trace, times = (sim, 1.0 + fit.extra[0]) if fit.name == "time_step" else (
-        real, 1.0 / max(1.0 + float(np.diag(fit.shape).mean()), DEAD))
+    ratio = max(1.0 + float(np.diag(fit.shape).mean()), DEAD)
+    if fit.hypothesis.shared:
+        times = real_turns, real_turns * ratio
+    else:
+        times = 1.0 / ratio, 1.0 + fit.extra[0] if fit.name == "time_step" else 1.0
+    return replace(fit, log=fit.log + sum(turns_nats(*x) for x in zip((real, sim), times)))
+
+
+def turns_nats(trace, times):
+    """Nats by which a Trace's directions of gravity are likelier where its gyro turns so many
+    times too far than where it is right; 0 where it has no two rests."""
     ups = trace.rest_means(trace.force)
-    if len(ups) < 2:
-        return fit
+    if len(ups) < 2 or times == 1.0:
+        return 0.0
     ups = ups / np.maximum(np.linalg.norm(ups, axis=1), 1e-9)[:, None]
     ways = moves(trace)
-    return replace(fit, log=fit.log + carried_log(ups, ways, times * np.eye(3))
-                   - carried_log(ups, ways, np.eye(3)))
+    return carried_log(ups, ways, times * np.eye(3)) - carried_log(ups, ways, np.eye(3))
 
 
 def world_log(body, ways):

@@ -59,7 +59,8 @@ class Hypothesis:
     free, and the first scaled of columns, carry the signal's noise; shape_sd (3, 3): of E, None
     for SHAPE; smooth_sd: s2, of how much smoother it is, see Fit;
     full_scale: how many times the signal the real one reads by a full scale that is not stated;
-    slopes: the columns are the world's two level axes, times gravity."""
+    slopes: the columns are the world's two level axes, times gravity; shared: the simulator reads
+    by the real one's full scale, whatever that is."""
 
     name: str
     signal: np.ndarray
@@ -75,6 +76,7 @@ class Hypothesis:
     smooth_sd: float = SMOOTH_S2
     full_scale: float = 1.0
     slopes: bool = False
+    shared: bool = False
 
 
 def none(n):

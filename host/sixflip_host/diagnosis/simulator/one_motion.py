@@ -124,7 +124,7 @@ def beside(logs):
 
     def fitted(real, sim):
         return conventions.same_motion(real, sim, logs.aligned, logs.motion, logs.live, fresh,
-                                       logs.own_real.full_scale)
+                                       logs.own_real)
     real, sim = logs.real_free, logs.sim_free
     fits = fitted(real, sim)
     stops = stops_of(fits)

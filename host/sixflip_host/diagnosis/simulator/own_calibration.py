@@ -46,6 +46,11 @@ class OwnSensor:
     full_scale: dict = field(default_factory=lambda: {"accel": 1.0, "gyro": 1.0})
     turned: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
+    @property
+    def turns(self):
+        """How many times as far as gravity its gyro turns."""
+        return 1.0 / float(np.diag(self.gyro).mean())
+
     def applied(self, trace):
         """The Trace as this sensor's true force and rate."""
         line = traces.rest_line(trace, trace.rate) if trace.rests else self.gyro_bias

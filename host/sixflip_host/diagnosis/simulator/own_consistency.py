@@ -44,9 +44,11 @@ class Reading:
     nameless: bool = False
 
 
-def conventions_of(real, sim, moving=True):
+def conventions_of(real, sim, moving=True, real_turns=1.0):
     """(Conventions, sentences on what could not be seen) of the simulator's Trace; moving: either
-    log moves. Of two that lie still, each somewhere, how they lie is no convention of either."""
+    log moves. Of two that lie still, each somewhere, how they lie is no convention of either.
+    real_turns: how many times as far as gravity the real gyro turns; what the simulator's shares
+    with it is no gap."""
     unseen = ["time step, centripetal term and lever arm of the simulator: they need a log of the "
               "same motion"]
     if not sim.rests:
@@ -101,6 +103,8 @@ def conventions_of(real, sim, moving=True):
         plain = directions.direction_log(ups, real, sim)
         tried += [(Reading(eye, eye, gyro_unit=times), plain + directions.carried_log(
             ups, ways, eye * times)) for times in TIMES]
+        tried.append((Reading(eye, eye), plain + directions.carried_log(
+            ups, ways, eye * real_turns)))
     if says > TURNED:
         tried.append((Reading(eye, eye, constant=True), directions.constant_log(ups, ways, sim)))
     tried.append((Reading(eye, eye, nameless=True), directions.direction_log(

@@ -142,7 +142,8 @@ def different_motion(real, sim, own_real, row_s, moving=True):
         return [], ["conventions of %s: they need a gyro in both logs" % sim.name], False, False
     # Where it drives slowly gravity is known as well as a direction has to be here.
     findings, unseen = own_consistency.conventions_of(*(
-        replace(log, rests=log.calm) for log in (real, sim)), moving)
+        replace(log, rests=log.calm) for log in (real, sim)), moving,
+        1.0 if own_real is None else own_real.turns)
     if findings or own_real is None or not sim.rests:
         return findings, unseen, False, False
     moved = fitted(real, own_real), fitted(sim, own_calibration.fitted(sim))
