@@ -141,6 +141,19 @@ def test_a_short_rest_tells_a_noise_that_is_another(times):
     assert sum(p.differs for p in numbers) == 6
 
 
+@pytest.mark.parametrize("louder, told", [
+    ((2.0, 2.0, 2.0), "xyz"), ((1.0, 1.0, 1.0), ""), ((4.0, 1.0, 1.0), "x"),
+    ((4.0, 4.0, 1.0), "xy"), ((1.5, 1.0, 0.7), "")])
+def test_noise_that_is_twice_as_large_on_three_axes_is_told_by_all_of_them(louder, told):
+    """None of them alone was 4 standard errors off in rests of 2.5 s, and nothing was said."""
+    for seed in range(5):
+        rng = np.random.default_rng(seed)
+        real, sim = (made_of(size * rng.standard_normal((1500, 3)), ((0, 250),))
+                     for size in (0.1 * np.array(louder), 0.1))
+        found = noise_and_registers.noises(real, sim)[0]
+        assert "".join(p.axis for p in found if p.differs and p.sensor == "accel") == told, seed
+
+
 def test_what_a_filter_takes_away_is_not_taken_off_the_density():
     """A pole of 5 Hz leaves a tenth of a sample's power, and all of the density at 1 Hz."""
     white = np.random.default_rng(6).standard_normal((1500, 3))

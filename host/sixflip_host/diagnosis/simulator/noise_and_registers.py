@@ -2,6 +2,7 @@
 and of the real sensor side by side; and whether a sample was given the number of a density (or the
 reverse)."""
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
@@ -44,30 +45,46 @@ def noises(real, sim):
         unit = "mg/√Hz" if kind == "accel" else "°/s/√Hz"
         floor = [x.quantum[0 if kind == "accel" else 1] for x in (real, sim)]
         silent = single_log.silent(sim, kind)
-        for i, axis in enumerate("xyz"):
-            if not np.ptp(values[1][:, i]):
-                continue  # a channel that says nothing is a convention
-            if single_log.step(values[0], floor[0])[i] > COARSE * (
-                    a if silent else b).per_sample[i] > 0:
-                continue  # in steps that coarse the real one's noise does not show
-            da, db = a.density[i] * scale, 0.0 if silent else b.density[i] * scale
-            # Noise is known to a share of itself: it is the ratio that can be told from one.
-            ratio = np.log(max(da, 1e-12) / max(db, 1e-12))
-            if a.moving != b.moving:  # of what moves it is known how much it is at most
-                ratio = min(ratio, 0.0) if a.moving else max(ratio, 0.0)
-            sigma = np.hypot(a.relative_sigma, b.relative_sigma)
-            found = in_factors(compared("noise_density", kind, axis, unit, da,
+        # A channel that says nothing is a convention, and in steps that are coarse the real one's
+        # noise does not show.
+        heard = [i for i in range(3) if np.ptp(values[1][:, i]) and not single_log.step(
+            values[0], floor[0])[i] > COARSE * (a if silent else b).per_sample[i] > 0]
+        densities = a.density * scale, np.zeros(3) if silent else b.density * scale
+        for i, apart in zip(heard, standard_errors_apart(
+                a, b, *(np.maximum(x[heard], 1e-12) for x in densities))):
+            da, db = (float(x[i]) for x in densities)
+            found = in_factors(compared("noise_density", kind, "xyz"[i], unit, da,
                                         da * a.relative_sigma, db, db * b.relative_sigma,
-                                        apart=abs(ratio) / sigma),
-                               a.relative_sigma, b.relative_sigma)
+                                        apart=apart), a.relative_sigma, b.relative_sigma)
             # To be set to what the real one has, however little is known of the simulator's.
             numbers.append(replace(found, set_to=found.real) if found.differs else found)
-        heard = (a.per_sample > single_log.DROWNED * floor[0]).all() and not silent
-        if heard and not (a.moving or b.moving) and (
+        drowned = (a.per_sample <= single_log.DROWNED * floor[0]).any() or silent
+        if not drowned and not (a.moving or b.moving) and (
                 np.minimum(b.density, b.per_sample) > 0).all():
             findings += density_convention(kind, a, b, sim.rate_hz)
             asked += 1
     return numbers, merged_noise(findings, asked)
+
+
+def standard_errors_apart(real, sim, density, simulated):
+    """(k,) by how many standard errors densities (k,) of two Noises differ. Noise is known to a
+    share of itself: it is the ratio that can be told from one. Any of the axes may be louder, by
+    one factor, as all are of another chip or range: the likeliest of these are so many off
+    together, which none of them may be alone."""
+    def at_most(ratios):  # of what moves it is known how much it is at most
+        if real.moving != sim.moving:
+            ratios = np.minimum(ratios, 0.0) if real.moving else np.maximum(ratios, 0.0)
+        return np.abs(ratios) / np.hypot(real.relative_sigma, sim.relative_sigma)
+
+    ratios = np.log(density / simulated)
+    each = at_most(ratios)
+    together = {some: float(at_most(ratios[list(some)].mean())) * np.sqrt(len(some))
+                for number in range(1, len(ratios) + 1)
+                for some in combinations(range(len(ratios)), number)}
+    if together:
+        likeliest = max(together, key=together.get)
+        each[list(likeliest)] = np.maximum(each[list(likeliest)], together[likeliest])
+    return each
 
 
 def in_factors(found, real_sigma, sim_sigma):
