@@ -197,12 +197,12 @@ def diagnose_sessions(sessions, settings=None, simulator=None, comparisons=(), d
     if simulator:
         remarks += simulator.remarks
         remarks += ["the simulator has %s (%s), the real sensor does not" % (f.effect, f.sensor)
-                    for f in simulator.only_simulated(findings, motion is not None
+                    for f in simulator.only_simulated(findings, sessions, motion is not None
                                                       and not compared_in_motion)]
         remarks += ["the real sensor has %s (%s); the simulator's log does not show whether it "
                     "has it, too" % (f.effect, f.sensor)
                     for f in findings if not (compared_in_motion or simulator.shows(f))]
-        findings = [f for f in findings if f.effect in lacking
+        findings = [simulator.lacks(f, sessions) for f in findings if f.effect in lacking
                     or simulator.shows(f) and simulator.new(f, sessions)]
         nameless = [place for place in nameless if not simulator.has_tone(sessions, place)]
     if comparisons:

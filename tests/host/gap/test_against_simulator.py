@@ -36,7 +36,7 @@ def test_another_sensor_or_effect_is_another_finding():
 
 def test_what_only_the_simulator_has_is_passed_on():
     line, step = finding({"x": 10.0}), finding({"x": 4.0}, effect="quantisation")
-    assert simulator(line, step).only_simulated([finding({"x": 9.0})]) == [step]
+    assert simulator(line, step).only_simulated([finding({"x": 9.0})], ()) == [step]
 
 
 def test_a_log_that_shows_nothing_of_what_acts_in_motion_is_not_said_to_lack_it():
@@ -45,8 +45,8 @@ def test_a_log_that_shows_nothing_of_what_acts_in_motion_is_not_said_to_lack_it(
     assert simulator(motion="judged").shows(arm)
     assert simulator().shows(finding({"x": 10.0}))
     own = simulator(arm, finding({"x": 10.0}), motion="judged")
-    assert own.only_simulated([], in_motion=False) == [own.diagnosis.findings[1]]
-    assert own.only_simulated([]) == own.diagnosis.findings
+    assert own.only_simulated([], (), in_motion=False) == [own.diagnosis.findings[1]]
+    assert own.only_simulated([], ()) == own.diagnosis.findings
 
 
 def test_the_simulators_remarks_and_silent_effects_are_passed_on(monkeypatch):

@@ -9,7 +9,8 @@ from scipy.signal import lfilter
 
 from sixflip_host.capture.capture import Capture
 from sixflip_host.diagnosis import localisation
-from sixflip_host.diagnosis.simulator import against_simulator
+from sixflip_host.diagnosis.detect import line_frequency, spectral_lines
+from sixflip_host.diagnosis.simulator import against_simulator, shaken_alike
 from sixflip_host.experiment import blocks
 from tests.worlds.tumbled import META
 
@@ -45,7 +46,7 @@ def test_a_hand_that_trembles_in_both_is_no_gap(rates, shaken):
     """At 50 rows a second it had half the size that it had at 100, and was on two axes."""
     real = session(trembling(1, (1.0, 0.9, 1.1)), rates[0], 1)
     simulated = session(trembling(2, (1.0, 0.9, 1.1)), rates[1], 2, noise=0.15)
-    assert against_simulator.alike(real, simulated, "gyro", shaken)
+    assert shaken_alike.alike(real, simulated, "gyro", shaken)
 
 
 @pytest.mark.parametrize("size, hz", [((0.0, 0.0, 0.0), 9.5), ((1.0, 0.0, 0.0), 9.5), (
@@ -54,13 +55,13 @@ def test_what_the_simulator_lacks_or_has_otherwise_is_one(size, hz):
     real = session(trembling(1, 1.0), 50.0, 1)
     simulated = session(trembling(2, size, hz) if any(size) else np.zeros(
         (int(SECONDS * FINE_HZ), 3)), 100.0, 2)
-    assert not against_simulator.alike(real, simulated, "gyro", {"x": 9.5, "y": 9.5})
+    assert not shaken_alike.alike(real, simulated, "gyro", {"x": 9.5, "y": 9.5})
 
 
 def test_a_power_is_the_same_by_any_rate():
     course = trembling(1, (1.0, 0.5, 2.0))
     for rate_hz in (50.0, 100.0, 200.0):
-        own = against_simulator.spectra(session(course, rate_hz, 1), "gyro")
+        own = shaken_alike.spectra(session(course, rate_hz, 1), "gyro")
         for axis, size in enumerate((1.0, 0.5, 2.0)):
             power, sigma = own.within(axis, 3.0, 17.0)
             assert np.sqrt(power) == pytest.approx(size, rel=0.1) and sigma < 0.2 * power
@@ -69,8 +70,8 @@ def test_a_power_is_the_same_by_any_rate():
 def test_without_a_rest_in_one_of_them_nothing_is_alike():
     real = session(trembling(1, 1.0), 50.0, 1)
     moving = [replace(session(trembling(1, 1.0), 50.0, 1)[0], runs=[])]
-    assert not against_simulator.alike(real, moving, "gyro", {"x": None})
-    assert not against_simulator.alike(real, real, "gyro", {})
+    assert not shaken_alike.alike(real, moving, "gyro", {"x": None})
+    assert not shaken_alike.alike(real, real, "gyro", {})
 
 
 def test_neither_a_vibration_nor_a_tone_without_a_name_is_new_that_both_logs_have():
@@ -89,3 +90,32 @@ def test_neither_a_vibration_nor_a_tone_without_a_name_is_new_that_both_logs_hav
         assert simulator.new(finding, real) is not both
         assert simulator.has_tone(real, tone) is both
         assert not simulator.has_tone(real, replace(tone, domain="noise"))
+
+
+def vibration(**sizes):
+    """Finding of a gyro that is shaken at 9.5 Hz, but along x at 17 Hz."""
+    lines = [line_frequency.Line("xyz".index(axis), 17.0 if axis == "x" else 9.5, 0.25, 40.0, size,
+                                 0.05) for axis, size in sizes.items()]
+    return spectral_lines.told(lines, "gyro", 100.0)
+
+
+def test_of_two_lines_the_one_that_both_logs_have_is_no_gap():
+    """A motor of the real one alone was told, and the sway of the ground on which both lay."""
+    real = session(trembling(1, (0.0, 1.0, 0.0)) + trembling(3, (1.0, 0.0, 0.0), 17.0), 100.0, 1)
+    simulator = against_simulator.Simulator(SimpleNamespace(
+        findings=[vibration(y=1.0)], sessions=session(trembling(2, (0.0, 1.0, 0.0)), 100.0, 2)),
+        {}, ())
+    found = vibration(x=1.4, y=1.4)
+    assert simulator.new(found, real)
+    assert simulator.lacks(found, real).axes == ["x"]
+    assert simulator.lacks(vibration(x=1.4), real).axes == ["x"]
+
+
+@pytest.mark.parametrize("size, alone", [(1.0, False), (0.2, True)])
+def test_what_the_real_one_is_shaken_by_as_much_is_not_the_simulator_s_alone(size, alone):
+    """"The simulator has vibration, the real sensor does not": 2.02 mg, and 2.05."""
+    own = vibration(y=1.0)
+    simulator = against_simulator.Simulator(SimpleNamespace(
+        findings=[own], sessions=session(trembling(2, (0.0, 1.0, 0.0)), 100.0, 2)), {}, ())
+    real = session(trembling(1, (0.0, size, 0.0)), 100.0, 1)
+    assert simulator.only_simulated([], real) == [own] * alone

@@ -10,7 +10,7 @@ own_rests, own_calibration, turned_in_box, own_motion, own_consistency, gravity_
                                    layer 1 where the motions differ: each log by its own rests
 parameters, noise_and_registers, shaking, numbers_told
                                    layer 2: the numbers to set, and what they close of the gap
-against_simulator, dead_zone, lacking_effects, lacking_courses, effects_beside
+against_simulator, shaken_alike, dead_zone, lacking_effects, lacking_courses, effects_beside
                                    layer 3: the effects that one has and the other lacks
 remaining_gap                      layer 4: what is left of the gap, and what it does to a robot
 comparison, simulator_answer       all layers in their order, and the JSON of them

@@ -1,0 +1,96 @@
+"""Whether what shakes the real sensor at rest shakes the simulator's as much, by the power of both
+logs in one band of frequencies: that depends neither on their rates nor on what each log by itself
+makes of a bump.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage, special
+
+from ..detect import rest_spectra
+from . import hypotheses
+
+# Of its peak's power, where a bump ends: beyond, a resonance has a third of its power.
+ENDS = 0.25
+# Probability that two logs of the same power are held for unlike, as of sizes that are three
+# standard errors apart (normal); standard errors from which on there is any power.
+UNLIKE, ANY = 0.0027, 3.0
+
+
+@dataclass(frozen=True)
+class Spectra:
+    """hz (k,); powers (R, 3, k) of each stretch at rest, (mg)2 or (deg/s)2 per Hz."""
+
+    hz: np.ndarray
+    powers: np.ndarray
+
+    @property
+    def mean(self):
+        """(3, k)"""
+        return self.powers.mean(axis=0)
+
+    def within(self, axis, low, high):
+        """(power of an axis between two frequencies beyond what is beside them, its standard
+        error)."""
+        inside = (self.hz >= low) & (self.hz <= high)
+        beside = ~inside & (self.hz > rest_spectra.LOWEST_HZ)
+        if inside.sum() < 2 or not beside.any():
+            return 0.0, np.inf
+        wide = self.hz[1]
+        floor = np.median(self.mean[axis, beside])
+        each = (self.powers[:, axis][:, inside] - floor).sum(axis=1) * wide
+        return float(each.mean()), float(each.std(ddof=1) / np.sqrt(len(each)))
+
+
+def spectra(sessions, sensor):
+    """Spectra of a sensor of several Sessions, or None."""
+    if any(getattr(s.capture, sensor) is None for s in sessions):
+        return None
+    stretches = rest_spectra.rests(sessions, sensor)
+    if len(stretches) < rest_spectra.FEWEST:
+        return None
+    rate, n = sessions[0].rate, len(stretches[0])
+    powers = [rest_spectra.periodograms(np.array([x[:, axis] for x in stretches]))
+              for axis in range(3)]
+    return Spectra(np.arange(n // 2 + 1) * rate / n, 2.0 * np.stack(powers, 1) / rate)
+
+
+def band(own, axis, hz):
+    """(lowest, highest Hz) of the bump of an axis around a frequency, or of the highest one for
+    None: as far as it does not fall below ENDS of its peak, and a line's lobe at least."""
+    mean = np.where(own.hz > rest_spectra.LOWEST_HZ, ndimage.uniform_filter1d(
+        own.mean[axis], 3, mode="nearest"), 0.0)
+    lobe = rest_spectra.LOBE
+    if hz is None:
+        top = int(mean.argmax())
+    else:
+        near = min(max(0, int(round(hz / own.hz[1])) - lobe), len(mean) - 1)
+        top = near + int(mean[near:near + 2 * lobe + 1].argmax())
+    labels = ndimage.label(mean > ENDS * mean[top])[0]
+    bins = np.flatnonzero(labels == labels[top])
+    first, last = min(bins[0], top - lobe), min(max(bins[-1], top + lobe), len(mean) - 1)
+    return max(first, 0) * own.hz[1], last * own.hz[1]
+
+
+def alike(real, simulated, sensor, shaken):
+    """Whether what shakes axes of a sensor at rest, {axis letter: Hz, or None for where it is
+    shaken most}, has the same power in both logs, Sessions each: a power that is there in the
+    simulator's, too, and differs from the real one's by no more than both scatter and scales do,
+    on all of the axes together."""
+    if not shaken or any(s.runs for s in real) != any(s.runs for s in simulated):
+        return False
+    logs = [spectra(sessions, sensor) for sessions in (real, simulated)]
+    if None in logs:
+        return False
+    apart = 0.0
+    for letter, hz in shaken.items():
+        axis = "xyz".index(letter)
+        ends = band(logs[0], axis, hz)
+        if ends[1] > logs[1].hz[-1]:
+            return False
+        (own, sigma), (theirs, their_sigma) = (log.within(axis, *ends) for log in logs)
+        if not theirs > ANY * their_sigma:
+            return False
+        scale = 2.0 * hypotheses.SHAPE * max(own, theirs)
+        apart += (own - theirs) ** 2 / (sigma ** 2 + their_sigma ** 2 + scale ** 2)
+    return bool(special.chdtrc(len(shaken), apart) > UNLIKE)
