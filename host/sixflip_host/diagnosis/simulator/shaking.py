@@ -20,7 +20,8 @@ FASTER_HZ = 2.0 * BAND_HZ  # where what the logs are compared by has faded
 SHOWS = 0.4  # of the rows a second: what a log of them shows undistorted
 SHAKES = 3.0  # times as hard: two runs over one floor differ by less (`make zoo`)
 GAP = 1.5  # rows: a step at a place where some are missing shakes nothing
-FEWEST_S = 8  # of moving, and half of that of rest
+FEWEST_S = 8  # of moving
+FEWEST_RESTS = 2  # pieces of rest: of one alone nothing tells whether it is like others
 PIECE_S = 0.5  # short enough for a move of a hand, and long enough to know a line to 2 Hz by
 LOBE = 1  # bins beside a line that Hann's window lays half of its height into
 
@@ -28,11 +29,20 @@ LOBE = 1  # bins beside a line that Hann's window lays half of its height into
 @dataclass(frozen=True)
 class Spectra:
     """What a log has in the bins from FASTER_HZ on: of its moving pieces what Fourier makes of
-    them (m, f, 3), scaled to power, with the number of each (m,); power at rest (f, 3)."""
+    them (m, f, 3), scaled to power, with the number of each (m,); power at rest (f, 3),
+    a mean over so many pieces."""
 
     moving: np.ndarray
     pieces: np.ndarray
     still: np.ndarray
+    rests: int
+
+    def at_rest(self, bins, axis):
+        """(power at rest of an axis in some bins, its standard error): each bin of each piece
+        is exponential about the power there, and Hann's window makes one of two bins [Percival
+        & Walden, Spectral Analysis for Physical Applications (1993), section 6.6]."""
+        still = self.still[bins, axis]
+        return float(still.sum()), float(np.sqrt(2.0 * (still ** 2).sum() / self.rests))
 
 
 @dataclass(frozen=True)
@@ -78,14 +88,15 @@ def shaking(real, sim, aligned):
 def _of_band(spectra, i):
     """Levels of one axis in the whole band, each log by its own pieces."""
     each = [(np.abs(s.moving[:, :, i]) ** 2).sum(axis=1) for s in spectra]
-    return _levels(each, [s.still[:, i].sum() for s in spectra])
+    return _levels(each, [s.at_rest(slice(None), i) for s in spectra])
 
 
 def _levels(each, still):
-    """Levels of powers of pieces, two (m,), and those at rest (2,)."""
-    error = [np.sqrt(x.var(ddof=1) / len(x) * independent((x - x.mean())[:, None])) for x in each]
-    return Levels(np.array([max(x.mean() - s, 0.0) for x, s in zip(each, still)]),
-                  np.array(error), max(*still, 1e-300))
+    """Levels of powers of pieces, two (m,), and those at rest, two (power, standard error)."""
+    error = [np.sqrt(x.var(ddof=1) / len(x) * independent((x - x.mean())[:, None]) + s ** 2)
+             for x, (_, s) in zip(each, still)]
+    return Levels(np.array([max(x.mean() - s, 0.0) for x, (s, _) in zip(each, still)]),
+                  np.array(error), max(*(s for s, _ in still), 1e-300))
 
 
 def _line(real, sim, i):
@@ -111,7 +122,7 @@ def _line(real, sim, i):
         each.append(alone * np.clip((power[0] - shared) / mean, 0.0, 1.0))
     lines = [slice(k - LOBE, k + LOBE + 1) for k in range(LOBE, bins - LOBE)]
     of_lines = [_levels([e[:, line].sum(axis=1) for e in each],
-                        [s.still[line, i].sum() for s in (real, sim)]) for line in lines]
+                        [s.at_rest(line, i) for s in (real, sim)]) for line in lines]
     powers = np.array([levels.power + levels.floor for levels in of_lines])
     stronger = int(powers[:, 1].max() > powers[:, 0].max())
     at = int(np.argmax(powers[:, stronger]))
@@ -165,7 +176,7 @@ def _spectra(trace, values, cut, top):
     read = ~(gap | trace.put_in | cut)[:pieces * rows].reshape(-1, rows).any(axis=1)
     rest = still[:pieces * rows].reshape(-1, rows)
     moves, rests = read & ~rest.any(axis=1), read & rest.all(axis=1)
-    if moves.sum() * PIECE_S < FEWEST_S or rests.sum() * PIECE_S < FEWEST_S / 2:
+    if moves.sum() * PIECE_S < FEWEST_S or rests.sum() < FEWEST_RESTS:
         return None
     x = values[:pieces * rows].reshape(-1, rows, 3)
     x = x - x.mean(axis=1, keepdims=True)
@@ -177,4 +188,4 @@ def _spectra(trace, values, cut, top):
     wanted = np.arange(FASTER_HZ, top, 1.0 / PIECE_S)
     made = made[:, np.argmin(np.abs(hz[:, None] - wanted), axis=0)]
     return Spectra(made[moves], np.flatnonzero(moves),
-                   (np.abs(made[rests]) ** 2).mean(axis=0))
+                   (np.abs(made[rests]) ** 2).mean(axis=0), int(rests.sum()))
