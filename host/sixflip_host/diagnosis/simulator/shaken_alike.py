@@ -31,15 +31,17 @@ class Spectra:
 
     def within(self, axis, low, high):
         """(power of an axis between two frequencies beyond what is beside them, its standard
-        error)."""
+        error, and that of noise alone: each bin of each stretch is exponential, and Hann's window
+        makes one of two bins [Percival & Walden (1993), section 6.6])."""
         inside = (self.hz >= low) & (self.hz <= high)
         beside = ~inside & (self.hz > rest_spectra.LOWEST_HZ)
         if inside.sum() < 2 or not beside.any():
-            return 0.0, np.inf
+            return 0.0, np.inf, np.inf
         wide = self.hz[1]
         floor = np.median(self.mean[axis, beside])
         each = (self.powers[:, axis][:, inside] - floor).sum(axis=1) * wide
-        return float(each.mean()), float(each.std(ddof=1) / np.sqrt(len(each)))
+        return (float(each.mean()), float(each.std(ddof=1) / np.sqrt(len(each))),
+                float(floor * wide * np.sqrt(2.0 * inside.sum() / len(each))))
 
 
 def spectra(sessions, sensor):
@@ -88,9 +90,11 @@ def alike(real, simulated, sensor, shaken):
         ends = band(logs[0], axis, hz)
         if ends[1] > logs[1].hz[-1]:
             return False
-        (own, sigma), (theirs, their_sigma) = (log.within(axis, *ends) for log in logs)
-        if not theirs > ANY * their_sigma:
+        (own, sigma, _), (theirs, their_sigma, noise) = (
+            log.within(axis, *ends) for log in logs)
+        if not (own > 0.0 and theirs > ANY * noise):
             return False
-        scale = 2.0 * hypotheses.SHAPE * max(own, theirs)
-        apart += (own - theirs) ** 2 / (sigma ** 2 + their_sigma ** 2 + scale ** 2)
+        # What comes and goes has as large an error as its mean, of which the share is known.
+        apart += np.log(own / theirs) ** 2 / (
+            (sigma / own) ** 2 + (their_sigma / theirs) ** 2 + (2.0 * hypotheses.SHAPE) ** 2)
     return bool(special.chdtrc(len(shaken), apart) > UNLIKE)
