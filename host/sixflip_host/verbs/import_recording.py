@@ -10,7 +10,7 @@ from .. import file_kinds, progress
 from ..capture import capture_file, clock, clock_words
 from ..capture.capture_header import SENSORS, STANDARD_G
 from ..capture.imports import presets
-from ..capture.imports.column_vocabulary import TIME_UNITS
+from ..capture.imports.column_vocabulary import TICKS, TIME_UNITS
 from ..file_arguments import add_input, add_output
 from ..terminal import plain, say
 
@@ -38,8 +38,8 @@ def add_arguments(parser):
         "from the times)")
     add("--time-column", metavar="NAME", help="column of times, or of sample numbers (default: "
         "told by its name)")
-    add("--time-unit", choices=[*TIME_UNITS, "samples"], help="its unit (default: told from its "
-        "name and values); samples needs --rate")
+    add("--time-unit", choices=[*TIME_UNITS, *TICKS, "samples"], help="its unit (default: told "
+        "from its name and values); samples needs --rate")
     add("--sort", action="store_true", help="put the rows in the order of their time, and say "
         "what was moved")
     add("--columns", metavar="A,B,…", help="names of the columns, - for one to leave out")

@@ -155,13 +155,28 @@ def test_a_board_that_began_again_is_no_clock_that_does(tmp_path, capsys):
 
 
 def test_times_that_fit_the_stated_rate_in_no_unit_are_refused(tmp_path, capsys):
-    """Ticks of 100 µs, as one maker's stamps are, are a tenth of that rate in ms."""
+    """Ticks of 100 µs are a tenth of that rate in ms."""
     rows = ["%d,%s" % (100 * k, one) for k, one in enumerate(lines(COUNTS))]
-    text = "// Update Rate: 100.0Hz\nSampleTimeFine,Acc_X,Acc_Y,Acc_Z\n" + "\n".join(rows) + "\n"
+    text = "// Update Rate: 100.0Hz\nclock,Acc_X,Acc_Y,Acc_Z\n" + "\n".join(rows) + "\n"
     said = refused(tmp_path, capsys, text)
-    assert "SampleTimeFine taken as ms: 10 Hz, but the file says 100 Hz" in said
+    assert "clock taken as ms: 10 Hz, but the file says 100 Hz" in said
     capture, _ = imported(tmp_path, capsys, text, "--rate", "100")
     assert capture.meta["rate_hz"] == 100.0
+
+
+@pytest.mark.parametrize("step, rate, unit, other", [
+    (25, 400.0, "100us", ""),                           # of MT Manager
+    (16667, 60.0, "us", "100us (0.6 Hz")])              # of Xsens DOT
+def test_what_a_maker_counts_under_a_name_is_all_that_its_unit_may_be(tmp_path, capsys, step,
+                                                                      rate, unit, other):
+    """Of 25 ms 400 rows would be ten seconds at 40 Hz, which an IMU's log may be as well."""
+    rows = ["%d\t%s" % (step * k, one.replace(",", "\t")) for k, one in enumerate(lines(COUNTS))]
+    text = "\t".join(["SampleTimeFine", "Acc_X", "Acc_Y", "Acc_Z"]) + "\n" + "\n".join(rows) + "\n"
+    capture, said = imported(tmp_path, capsys, text)
+    assert capture.meta["rate_hz"] == pytest.approx(rate, rel=1e-3)
+    assert "SampleTimeFine taken as %s: %.4g Hz" % (unit, rate) in said and other in said
+    named, _ = imported(tmp_path, capsys, text, "--time-unit", "us" if other else "100us")
+    assert (named.t_us == capture.t_us).all()
 
 
 @pytest.mark.parametrize("name, scale", [

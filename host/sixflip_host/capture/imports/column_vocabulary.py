@@ -36,6 +36,11 @@ ARRIVALS = {"date", "server", "host", "pc", "system", "arrival", "arrived", "rec
             "rx"}
 TIME_UNITS = {"ns": 1e-3, "us": 1.0, "ms": 1e3, "s": 1e6}     # microseconds
 LONG_UNITS = {"min": 6e7, "h": 3.6e9}       # of times whose name says so, and of no others
+TICKS = {"100us": 100.0}        # of those that the columns below count
+# What makers count under a name that says no unit: Xsens ticks of 10 kHz [MT Low Level
+# Communication Protocol, MT0101P, XDI_SampleTimeFine], its DOT whole µs [BLE Services
+# Specification, table 8].
+COUNTED = {"sampletimefine": {**TICKS, "us": 1.0}}
 UNIT_OF_TIME = {"s": "s", "sec": "s", "secs": "s", "second": "s", "seconds": "s", "ms": "ms",
                 "msec": "ms", "millis": "ms", "milliseconds": "ms", "us": "us", "µs": "us",
                 "usec": "us", "micros": "us", "microseconds": "us", "ns": "ns", "nsec": "ns",

@@ -172,8 +172,9 @@ class Conversion:
         elif not options.time_unit:
             words = time_stamps.check_named(self.table.path, name, times, unit)
             self.assumed += [words] if words else []
-        scale = 1e6 / options.rate if unit == "samples" else {
-            **column_vocabulary.TIME_UNITS, **column_vocabulary.LONG_UNITS}[unit]
+        scale = 1e6 / options.rate if unit == "samples" else (
+            column_vocabulary.TIME_UNITS | column_vocabulary.TICKS
+            | column_vocabulary.LONG_UNITS)[unit]
         time_stamps.check_stretch(
             self.table.path, name, times, scale,
             lambda row: self.line_of(int(row if order is None else order[row])))

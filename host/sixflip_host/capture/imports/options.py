@@ -58,9 +58,9 @@ def check_options(options):
     if options.time_unit == "samples" and options.rate is None:
         raise UsageError("--time-unit samples needs --rate HZ")
     if options.time_unit and options.time_unit != "samples" \
-            and options.time_unit not in column_vocabulary.TIME_UNITS:
-        raise UsageError("--time-unit %s: expected one of %s" % (
-            options.time_unit, " ".join([*column_vocabulary.TIME_UNITS, "samples"])))
+            and options.time_unit not in column_vocabulary.TIME_UNITS | column_vocabulary.TICKS:
+        raise UsageError("--time-unit %s: expected one of %s" % (options.time_unit, " ".join(
+            [*column_vocabulary.TIME_UNITS, *column_vocabulary.TICKS, "samples"])))
     if options.label_column and options.sections:
         raise UsageError("--label-column and --sections: expected one of the two")
     said_units(options.units)

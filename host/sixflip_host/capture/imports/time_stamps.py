@@ -7,7 +7,7 @@ import numpy as np
 
 from ...errors import BadFile
 from .. import stamp_envelope
-from .column_vocabulary import TIME_UNITS
+from .column_vocabulary import COUNTED, TICKS, TIME_UNITS
 
 # When a stamp counts from 1970 it lies between 2001 and 2065 in one unit only.
 EPOCH_S = (1e9, 3e9)
@@ -30,7 +30,8 @@ SPAN = 20                       # rows over which intervals are averaged
 
 
 def unit_of(path, column, times, celsius=None):
-    """(unit, sentence) of a column of times; BadFile asking for it where two units would do.
+    """(unit, sentence) of a column of times; BadFile asking for it where two units would do. What
+    its maker is known to count under its name is all that it may be.
 
     times float (n,), in order or nearly so; celsius (n,) or None: temperatures beside them.
     """
@@ -38,18 +39,19 @@ def unit_of(path, column, times, celsius=None):
     if not usual > 0:
         raise BadFile("%s: %s stands still, expected times that run, or --rate HZ" % (
             path, column))
-    rates = {unit: 1e6 / (usual * us) for unit, us in TIME_UNITS.items()}
+    scales = COUNTED.get(column.lower(), TIME_UNITS)
+    rates = {unit: 1e6 / (usual * us) for unit, us in scales.items()}
     first = abs(float(times[0]))
-    epochs = [unit for unit, us in TIME_UNITS.items()
+    epochs = [unit for unit, us in scales.items()
               if EPOCH_S[0] < first * us / 1e6 < EPOCH_S[1] and _within(rates[unit], 1e-3, 1e5)]
     if len(epochs) == 1:
         return epochs[0], "%s counts %s from 1970" % (column, epochs[0])
     if usual == 1.0 and (np.diff(times[:1000]) == 1.0).all():
         raise BadFile("%s: %s counts by 1, which may be samples, expected --time-unit samples "
                       "with --rate HZ, or --time-unit ms" % (path, column))
-    units = [unit for unit in TIME_UNITS if celsius is None
-             or _warming(times, celsius, unit) < MOST_C_PER_S]
-    seconds = {unit: float(times[-1] - times[0]) * us / 1e6 for unit, us in TIME_UNITS.items()}
+    units = [unit for unit in scales if celsius is None
+             or _warming(times, celsius, scales[unit]) < MOST_C_PER_S]
+    seconds = {unit: float(times[-1] - times[0]) * us / 1e6 for unit, us in scales.items()}
     usually = [unit for unit in units if _within(rates[unit], *USUAL_HZ)]
     possible = [unit for unit in units if _within(rates[unit], *POSSIBLE_HZ)]
     likely = [unit for unit in usually if seconds[unit] >= SHORTEST_S]
@@ -60,10 +62,10 @@ def unit_of(path, column, times, celsius=None):
             likely = ["s", *(unit for unit in usually
                              if unit != "s" and rates[unit] <= MOMENT_HZ)]
     readings = {unit: "%s (%.4g Hz, %.3g s)" % (unit, rates[unit], seconds[unit])
-                for unit in TIME_UNITS}
+                for unit in scales}
     if len(likely) != 1:
         raise BadFile("%s: %s goes on by %.6g, expected --time-unit with one of %s" % (
-            path, column, usual, ", ".join(readings[unit] for unit in likely or TIME_UNITS)))
+            path, column, usual, ", ".join(readings[unit] for unit in likely or scales)))
     others = [readings[unit] for unit in possible if unit != likely[0]]
     return likely[0], "%s taken as %s: %.4g Hz%s" % (
         column, likely[0], rates[likely[0]], ", %.3g s; --time-unit if it is %s" % (
@@ -92,7 +94,7 @@ def check_named(path, column, times, unit):
 def check_stated(path, words, times, unit, stated):
     """BadFile where the rate in a unit that was told is far from the one that the file states
     (Hz, or None)."""
-    rate = 1e6 / (_usual(times) * TIME_UNITS[unit])
+    rate = 1e6 / (_usual(times) * (TIME_UNITS | TICKS)[unit])
     if stated is not None and not _within(rate / stated, 1.0 / TIMES_STATED, TIMES_STATED):
         raise BadFile("%s: %s, but the file says %.6g Hz, expected --time-unit, or --rate HZ" % (
             path, words, stated))
@@ -110,10 +112,10 @@ def _usual(times):
     return float(np.median(times[span:] - times[:-span])) / span
 
 
-def _warming(times, celsius, unit):
-    """The fastest change of the temperature between tenths of the file, °C/s."""
+def _warming(times, celsius, us):
+    """The fastest change of the temperature between tenths of the file, °C/s; us: of a time."""
     edges = np.linspace(0, len(times) - 1, 11).astype(int)
-    seconds = np.diff(times[edges]) * TIME_UNITS[unit] / 1e6
+    seconds = np.diff(times[edges]) * us / 1e6
     return float(np.max(np.abs(np.diff(celsius[edges])) / np.maximum(seconds, 1e-12)))
 
 
