@@ -27,10 +27,10 @@ from .stamp_envelope import PAUSE_ROWS, PAUSE_S
 # one as often as an early one; and a loss that is not seen makes the period longer, which hides
 # more of them.
 LIFTED = 0.6
-FEWEST_PHASES = 4
+FEWEST_PHASES, FEWEST = 4, 2
 BLOCKS = 10             # parts whose rates give the interval of the whole
-FEWEST = 2
 ROUNDS = 4              # until the period is settled to a millionth
+STAMP_STEP = "stamp_step_us"    # in a header: of stamps whose rows were spread
 # 97.5 % quantiles: of the normal distribution, of Student's with 2 to 9 degrees of freedom
 NORMAL_95, STUDENT_95 = 1.96, (4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262)
 
@@ -159,24 +159,24 @@ def _after_a_backlog(measured, held, t_us):
                    lost_after=tuple((row + held, k) for row, k in measured.lost_after))
 
 
-def within(measured, part):
-    """The SampleClock with an interval of the rate that is at least such a part of it to either
-    side: for times that say less than they look like."""
-    low, high = measured.interval_hz
-    return replace(measured, interval_hz=(min(low, measured.rate_hz * (1.0 - part)),
-                                          max(high, measured.rate_hz * (1.0 + part))))
+def of_stamps(measured, step_us, part=0.0):
+    """The SampleClock of rows spread between stamps so many µs apart, which resolve no more of
+    when a row was read, nor the rate to less than such a part to either side."""
+    (low, high), rate = measured.interval_hz, measured.rate_hz
+    return replace(measured, resolution_ms=max(measured.resolution_ms, step_us / 1e3),
+                   interval_hz=(min(low, rate * (1.0 - part)), max(high, rate * (1.0 + part))))
 
 
 def sample_clock(capture):
-    """The SampleClock of a Capture. Where a board's own file says that it wrote to its flash, it
-    read nothing meanwhile; that is no loss. Rows that were left out had their stamps, too: they
-    are missing, and make none of the others late."""
+    """The SampleClock of a Capture, or None. Where a board's own file says that it wrote to its
+    flash, it read nothing meanwhile; that is no loss. Rows that were left out had their stamps,
+    too: they are missing, and make none of the others late."""
     _, places = capture_binary.lost_on_the_way(capture)
     recorder = np.setdiff1d(capture_binary.write_pauses(capture), places)
-    recorded = getattr(capture, "recorded", None)
-    if recorded is None or len(recorded[1]) != len(capture.t_us):
-        return measure(capture.t_us, recorder, places)
-    t_us, kept = recorded
+    t_us, kept = getattr(capture, "recorded", None) or (capture.t_us, ())
+    if len(kept) != len(capture.t_us):
+        measured = measure(capture.t_us, recorder, places)
+        return measured and of_stamps(measured, capture.meta.get(STAMP_STEP, 0.0))
     measured = measure(t_us, kept[recorder], kept[places])
     if measured is None:
         return None
@@ -186,7 +186,8 @@ def sample_clock(capture):
     all_before = (np.arange(len(t_us)) + np.cumsum(missing))[kept]
     lacks = np.diff(all_before) - 1
     rows = np.flatnonzero(lacks)
-    return replace(measured, lost_after=tuple(zip(rows.tolist(), lacks[rows].tolist())))
+    lost_after = tuple(zip(rows.tolist(), lacks[rows].tolist()))
+    return of_stamps(replace(measured, lost_after=lost_after), capture.meta.get(STAMP_STEP, 0.0))
 
 
 def recorded_without(capture, rows):

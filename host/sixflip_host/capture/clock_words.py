@@ -1,5 +1,6 @@
 """A recording's clock in words and for --json: the rate first, then losses, pauses, late rows,
 changes of the rate and jitter, each with its number."""
+import math
 
 
 def as_json(measured):
@@ -63,8 +64,10 @@ def pace_words(measured):
 
 
 def jitter_words(measured):
-    """A sentence on jitter of more than a hundredth of a period, or ""."""
-    if measured.jitter_ms * measured.rate_hz <= 10:
+    """A sentence on jitter of more than a hundredth of a period and of more than stamps scatter
+    by that are whole multiples of their resolution, or ""."""
+    rounding_ms = measured.resolution_ms / math.sqrt(12.0)
+    if measured.jitter_ms * measured.rate_hz <= 10 or measured.jitter_ms <= rounding_ms:
         return ""
     return "jitter: the stamps scatter by %.3g ms" % measured.jitter_ms
 

@@ -5,6 +5,8 @@ import datetime
 import numpy as np
 import pytest
 
+from sixflip_host.capture import clock as sixflip_clock
+from sixflip_host.capture import clock_words
 from tests.worlds.imported_text import (
     COUNTS,
     ROWS,
@@ -240,6 +242,20 @@ def test_rows_that_share_whole_seconds_are_spread_evenly(tmp_path, capsys):
     low, high = capture.meta["rate_interval_hz"]
     assert low < 31 < high and high - low > 31 / ROWS
     assert np.abs(capture.t_us - np.arange(ROWS) * 1e6 / 31).max() < 40_000
+
+
+def test_rows_that_were_spread_say_nothing_of_how_the_stamps_scatter(tmp_path, capsys):
+    """Of a clock that wanders by a row or two, so that 48 or 49 rows have the same second."""
+    k = np.arange(1500)
+    seconds = k / 48.5 + 0.3 + 0.03 * np.sin(2 * np.pi * k / 400)
+    text = table([clock(t, "%Y-%m-%d %H:%M:%S") for t in seconds], "Timestamp",
+                 np.random.default_rng(21).normal([0, 0, 16384], 40, (len(k), 3)))
+    capture, said = imported(tmp_path, capsys, text)
+    assert "which 48 rows share" in said or "which 49 rows share" in said
+    measured = sixflip_clock.sample_clock(capture)
+    assert measured.resolution_ms == 1000.0 and measured.jitter_ms > 0.01 * 1e3 / 48.5
+    assert "jitter:" not in said and not any("jitter:" in line
+                                             for line in clock_words.words(measured))
 
 
 def test_rows_that_share_seconds_of_a_recorder_that_stood_still(tmp_path, capsys):
