@@ -19,6 +19,7 @@ from .detect import (
     codes,
     dead_band,
     held_values,
+    lattice,
     line_across_rests,
     missing_rows,
     noise_bursts,
@@ -214,12 +215,14 @@ def _of_registers(sensor, sessions):
     meta, rate = sessions[0].capture.meta, min(s.rate for s in sessions)
     noise = typical.noise_at(typical.chip_of(meta["sensor"], sensor), rate)
     band = dead_band.findings(sensor, columns, [s.at_rest for s in sessions], min(
-        noise) / QUIETEST / registers.unit_of_count(meta, sensor), [
-            s.capture.meta.get(sensor + "_values") == "float" for s in sessions])
+        noise) / QUIETEST / registers.unit_of_count(meta, sensor))
+    # Of a file of decimals the counts are none of a chip's: what it counts in is its own step.
+    steps = [lattice.steps(c) if registers.own_counts(s.capture, sensor) else registers.steps(c)
+             for s, c in zip(sessions, columns)]
     steps = [np.where(found > s.capture.meta.get(sensor + "_own_step", 1), found, 1)
-             for s, found in zip(sessions, map(registers.steps, columns))]
+             for s, found in zip(sessions, steps)]
     return (agreed_by_axis("quantisation", sensor, steps,
-                           [codes.step_nats(c) for c in columns], "counts come in steps",
+                           list(map(codes.step_nats, columns, steps)), "counts come in steps",
                            [codes.distinct(c) for c in columns])
             + _in_units(band, sessions[0].capture.meta, sensor)
             + saturation.saturation(sessions, sensor, columns)

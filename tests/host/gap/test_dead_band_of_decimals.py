@@ -33,7 +33,7 @@ def found_in(tmp_path, accel=None, gyro=None):
         accel = [0.0, 0.0, 1.0] + np.random.default_rng(5).normal(0, 0.003, (ROWS, 3))
     if gyro is None:
         gyro = np.random.default_rng(6).normal(0, 0.07, (ROWS, 3))
-    (tmp_path / "in.csv").write_text(table(["%.2f" % (k / 100) for k in range(ROWS)],
+    (tmp_path / "in.csv").write_text(table(["%.2f" % (k / 100) for k in range(len(gyro))],
                                            accel=accel, gyro=gyro, form="%.7f"))
     assert main(["import", str(tmp_path / "in.csv"), "-o", str(tmp_path / "out.csv"),
                  "--units", "g,dps", "--no-poses"]) == 0
@@ -70,7 +70,7 @@ def test_a_log_whose_bias_was_taken_off_and_that_shakes_as_it_turns_has_no_dead_
     noise = rng.normal(0, 0.7, (ROWS, 3)) + rng.normal(0, 2.0, (ROWS, 3)) * ~still[:, None]
     codes = np.rint(turn[:, None] * [1.0, -0.8, 1.2] + noise + [0.13, -0.05, 0.02])
     counts = np.rint(step * codes + (0.4 if decimals else 0.0)).astype(np.int16)
-    assert dead_band.findings("gyro", [counts], [still], decimals=[decimals]) == []
+    assert dead_band.findings("gyro", [counts], [still]) == []
 
 
 def test_steps_of_little_more_than_two_counts_are_no_dead_band():
@@ -81,7 +81,7 @@ def test_steps_of_little_more_than_two_counts_are_no_dead_band():
     swing = np.sin(2 * np.pi * t / 160.0)[:, None] * [9.0, -7.0, 90.0]
     codes = np.rint(swing + rng.normal(0, [0.8, 0.8, 2.0], (ROWS, 3)))
     counts = np.rint(2.3946 * codes).astype(np.int16)
-    assert dead_band.findings("gyro", [counts], [t < 0], decimals=[True]) == []
+    assert dead_band.findings("gyro", [counts], [t < 0]) == []
     assert [one.spacing for one in lattice.of_columns(counts.astype(int))] == pytest.approx(
         [2.3946] * 3, rel=0.01)
 
@@ -104,7 +104,7 @@ def test_a_band_in_a_file_of_decimals_is_found_in_its_values():
     counts = np.rint(5.346 * codes).astype(np.int16)
     found = lattice.of_column(counts[:, 0].astype(int))
     assert found.spacing == pytest.approx(5.346, rel=0.01)
-    said, = dead_band.findings("gyro", [counts], [still], decimals=[True])
+    said, = dead_band.findings("gyro", [counts], [still])
     assert "z" in said.axes
     assert all(value == pytest.approx(5 * 5.346, abs=6) for value in said.value.values())
 
@@ -128,3 +128,25 @@ def test_a_band_whose_upper_end_the_rests_do_not_show_is_so_much_or_more():
     finding = Finding("dead_band", "gyro", ["z"], {"z": 2}, "counts", 30.0, "amplitude", "",
                       {"z": (2, 18300.0)}, share=1.0)
     assert gap_words.row(answer.of_finding(finding))[-1] == "z 2 or more counts"
+
+
+def test_wide_steps_of_whole_counts_less_a_bias_are_steps_and_no_dead_band(tmp_path):
+    """1/256 g by a maker's scale, less a bias, in a file of 1/2048 g: ... -11, -3, 4 or 5, 12."""
+    rng = np.random.default_rng(9)
+    lean, turn = 1.5 * np.sin(np.arange(ROWS) / 300), np.arange(ROWS) / 170
+    down = np.stack([np.sin(lean) * np.cos(turn), np.sin(lean) * np.sin(turn), np.cos(lean)], 1)
+    codes = np.rint(257.8 * (down + rng.normal(0, 0.03, (ROWS, 3))))
+    found = found_in(tmp_path, accel=np.rint(7.945 * codes + [3.9, 0.26, -1.95]) / 2048)
+    assert "dead_band" not in found
+    assert found["quantisation"].value == {"x": 8, "y": 8, "z": 8}
+
+
+def test_a_chips_steps_in_decimals_of_a_short_log_are_no_dead_band(tmp_path):
+    """Ten seconds of a chip at rest whose bias was taken off: 6 steps of noise are all it reads,
+    and the values next to 0 are a step of 0.061 deg/s apart as all others."""
+    rng = np.random.default_rng(10)
+    bias = np.array([0.030, 0.020, 0.0020])
+    gyro = np.rint(rng.normal(0.0, 0.09, (499, 3)) / 0.061) * 0.061 - bias
+    gyro[:60] += np.rint(np.linspace(0, 2600, 60))[:, None] * 0.061
+    assert "dead_band" not in found_in(
+        tmp_path, gyro=gyro, accel=[0.0, 0.0, 1.0] + rng.normal(0, 0.003, (499, 3)))

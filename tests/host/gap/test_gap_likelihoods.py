@@ -186,7 +186,7 @@ def test_samples_lost_in_runs_are_counted():
 
 def test_codes_on_a_grid_count_code_by_code():
     column = np.arange(-30, 30, dtype=np.int64) * 4
-    few, many = (codes.step_nats(np.stack([x] * 3, 1))[0] for x in (column[:13], column))
+    few, many = (codes.step_nats(np.stack([x] * 3, 1), [4] * 3)[0] for x in (column[:13], column))
     assert many - few == pytest.approx((len(column) - 13) * np.log(4.0))
 
 

@@ -41,11 +41,11 @@ MANY = 0.15
 ALONE, SELDOM = 10.0, 0.01
 
 
-def step_nats(counts):
-    """(3,) log likelihood ratio (nats) of every code lying on a grid of steps: without one each
-    code that appears lies there with a chance of one in the width of a step."""
+def step_nats(counts, sizes):
+    """(3,) log likelihood ratio (nats) of every code lying on a grid of steps of sizes (3,):
+    without one each code that appears lies there with a chance of one in the width of a step."""
     nats = []
-    for column, step in zip(counts.T, steps(counts)):
+    for column, step in zip(counts.T, sizes):
         values = codes(column)
         number = int((np.abs(values) < RAIL).sum())
         nats.append((number - 1) * math.log(step) - math.log(STEPS_TRIED) if step > 1 else 0.0)

@@ -57,11 +57,10 @@ class Band:
 NOTHING = Band(0.0, 1.0, 0)
 
 
-def findings(sensor, columns, at_rest, noise=0.0, decimals=()):
+def findings(sensor, columns, at_rest, noise=0.0):
     """[Finding] of readings near 0 that are 0, by the codes that are missing or too frequent; on
     other axes by how the readings pass through 0, and by how quiet they are at rest there; noise:
-    counts that any such part has at least; decimals: bool of each of the columns, True where they
-    are of a file of decimals, whose counts are none of a chip's."""
+    counts that any such part has at least."""
     words = "counts near 0 read 0"
     about = [[codes.resting(column) for column in c.T] for c in columns]
     if np.any(about):  # a bias was taken off before, and put back on
@@ -69,8 +68,7 @@ def findings(sensor, columns, at_rest, noise=0.0, decimals=()):
             str(code) for code in dict.fromkeys(np.ravel(about).tolist()))
     columns = [np.clip(c.astype(np.int32) - np.array(code), -RAIL - 1, RAIL)
                for c, code in zip(columns, about)]
-    lattices = [lattice.of_columns(c) if of_decimals else [lattice.COUNTS] * 3
-                for c, of_decimals in zip(columns, [*decimals, *[False] * len(columns)])]
+    lattices = [lattice.of_columns(c) for c in columns]
     numbers = [np.stack([one.numbers(column) for one, column in zip(ones, c.T)], 1)
                for c, ones in zip(columns, lattices)]
     spacings = [np.array([one.spacing for one in ones]) for ones in lattices]

@@ -1,12 +1,12 @@
 """The values that a column lies on, and how often the one at 0 is read.
 
-Of a file of decimals a chip's steps are wider than the file's own counts: an import scales those
-to its largest reading, so that steps of 0.061 deg/s become 5.35 counts and 0 may be no value at
-all. A code that is missing near 0 is missing everywhere then, and a dead band is one only by the
-values that the column has. How often each count is read has a line in its spectrum at one over
-the spacing, whose phase says where the values lie. Columns that lie on whole counts, or on none,
-have no such line. A converter whose steps differ leaves codes of the same low bits out, which its
-wide steps hold.
+A chip's steps may be wider than a file's own counts, and a bias that was taken off shifts them:
+an import of decimals scales counts to its largest reading, so that steps of 0.061 deg/s become
+5.35 of them, and a logger that calibrates rounds to finer ones. 0 may be no value at all then, and
+a code that is missing near 0 is missing everywhere: a dead band is one only by the values that the
+column has. How often each count is read has a line in its spectrum at one over the spacing, whose
+phase says where the values lie. Columns that lie on whole counts, or on none, have no such line.
+A converter whose steps differ leaves codes of the same low bits out, which its wide steps hold.
 
 Where no code is missing, 0 is read often by a band that reads 0 and beyond which readings begin
 at 0 again, or by the noise alone. About a mean of its own each window has noise of its own; noise
@@ -22,11 +22,12 @@ from scipy import special
 
 from ...capture import registers
 from ...capture.registers import RAIL
+from .detection import present
 
-# Counts to either side of 0 that are looked at, and readings there: what is farther away tells
-# nothing of a dead band. Spacings that are looked for: at two counts each line has its mirror
+# Counts to either side of 0 that are looked at: what is farther away tells nothing of a dead band.
+# Spacings that are looked for: at two counts each line has its mirror
 # image, and 2.39 of 1/2048 rad/s is the narrowest of a public log; above, too few values lie near.
-NEAR, FEWEST, LEAST, MOST = 512, 500, 2.1, 64.0
+NEAR, LEAST, MOST = 512, 2.1, 64.0
 FINER = 16  # values of a spectrum in the width of a line
 # Of all readings, in phase: rounding to counts leaves 0.64 of the line of 5 counts and more in
 # public logs with a chip's steps, and 0.45 is the most of one without.
@@ -82,11 +83,19 @@ def of_columns(counts):
             for one, column in zip(alone, counts.T)]
 
 
+def steps(counts):
+    """(3,) counts from a value to the next of columns (n, 3): their common divisor, or, where an
+    offset or a factor leaves them none, the whole number next to the spacing of their values."""
+    divisors = registers.steps(counts)
+    return np.where(divisors > 1, divisors, np.rint(
+        [one.spacing for one in of_columns(counts)])).astype(int)
+
+
 def of_column(column, about=None):
     """The Lattice of a column (n,) of whole numbers, COUNTS where it has no other; about: the
     spacing of another axis, near which this one's is, or None."""
     near = column[(column > -NEAR) & (column < NEAR)]
-    if len(near) < FEWEST:
+    if len(near) < 2:
         return COUNTS
     times = np.bincount(near + NEAR, minlength=2 * NEAR).astype(float)
     times = np.minimum(times, np.quantile(times[times > 0], COMMON))
@@ -99,11 +108,19 @@ def of_column(column, about=None):
     if size[beyond] >= BROAD or not asked.any():
         return COUNTS
     k = int(np.argmax(np.where(asked, size, 0.0)))
-    if size[k] < (BESIDE if about else IN_PHASE):
+    # Readings that lie anywhere have a line of this power once in so many [Rayleigh, Phil. Mag.
+    # 10 (1880) 73]; those of a run are one, and so many lines were looked at.
+    nats = number_of_readings(near) * size[k] ** 2 - np.log(asked.sum() / FINER + 1.0)
+    if size[k] < (BESIDE if about else IN_PHASE) or not present(nats):
         return COUNTS
     spacing = 1.0 / per_count[k]
     first = -np.angle(spectrum[k]) / (2.0 * np.pi) * spacing - NEAR
     return Lattice(spacing, float(first - spacing * np.rint(first / spacing)))
+
+
+def number_of_readings(column):
+    """Number of runs of the same reading in a column (n,)."""
+    return 1 + int(np.count_nonzero(np.diff(column)))
 
 
 def swallowed_nats(every):
