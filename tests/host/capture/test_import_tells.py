@@ -152,6 +152,24 @@ def test_rests_that_read_far_from_1_g_are_said(tmp_path, capsys, scale, words, s
     assert said in found and ("gravity is" in found) == bool(said)
 
 
+FACES = [5, 5, 5, 5, 5, 4, 0, 5, 5, 1, 3, 5, 5, 2, 3, 5, 5, 1, 4, 5]
+
+
+@pytest.mark.parametrize("scale, offset, faces, said", [
+    (1.0, 0.48, FACES, "it has an offset of 0.00, 0.00, 0.48 g, about which gravity is 1"),
+    (1.34, 0.02, FACES, "g, about which gravity is 1.34 g; its scale is off"),
+    (1.34, 0.0, FACES, "file: its scale is off, or its unit"),
+    (1.0, 0.34, [5, 5], "file: its scale or its offset is off, or its unit")])
+def test_gravity_that_differs_from_face_to_face_is_an_offset(tmp_path, capsys, scale, offset,
+                                                            faces, said):
+    """Most of the time on the face whose offset adds to gravity."""
+    face = np.r_[-np.eye(3), np.eye(3)][np.repeat(faces, 120)]
+    noise = np.random.default_rng(23).normal(0, 0.003, face.shape)
+    text = table(["%.2f" % (k / 100) for k in range(len(face))], form="%.9g",
+                 accel=(scale * face + [0.0, 0.0, offset] + noise) * G)
+    assert said in imported(tmp_path, capsys, text, "--units", "si", "--no-poses")[1]
+
+
 def test_the_lowest_count_of_all_is_a_whole_step(tmp_path, capsys):
     gyro = GYRO.copy()
     gyro[5, 0] = -32768

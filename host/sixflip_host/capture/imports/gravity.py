@@ -28,6 +28,7 @@ STAYS_S, STAYS, MAXWELL, FEWEST_STAYS = 4.0, 0.3, math.sqrt(3.0 * math.pi / 8.0 
 MOST_TURNS = 20_000     # twentieths of a second in which gravity is seen to turn: the first ones
 LAG = 4                 # of those, over which it is
 DISAGREES = 2.0         # factor from 1 g beyond which what was said of the unit is wrong
+TELLS = math.log(20.0)  # nats of a hypothesis that is named alone
 # Of a scale of the gyro, where what moves the sensor is told along with it: degrees for radians
 # are 57; a fifth apart, then a fiftieth; twentieths of a second that are looked at; of |a|, what
 # knocks have more of.
@@ -42,6 +43,15 @@ class Gravity(NamedTuple):
 
     size: float
     rests: bool
+
+
+class Offset(NamedTuple):
+    """about (3,): what an accelerometer reads where nothing acts, in the unit of its values;
+    size: of gravity about that; nats: how much likelier than no offset at another scale."""
+
+    about: np.ndarray
+    size: float
+    nats: float
 
 
 class Turn(NamedTuple):
@@ -67,13 +77,10 @@ def seen(values, usual=USUAL):
     recording, and while it does it reads less: where the median is 1 g and what rests reads less
     than half of it, gravity is what rests as the median has it, or else the median.
     """
-    number = len(values) // WINDOW
-    if number < 2:
+    if len(values) < 2 * WINDOW:
         return None
-    step = -(-number // MOST_WINDOWS)
-    windows = values[:number * WINDOW].reshape(number, WINDOW, 3)[::step].astype(float)
-    size = np.linalg.norm(windows.mean(axis=1), axis=1)
-    scatter = np.sqrt(windows.var(axis=1).sum(axis=1))
+    mean, scatter = _windows(values)
+    size = np.linalg.norm(mean, axis=1)
     usually = float(np.median(size))
     quiet = scatter < QUIET * size
     if quiet.mean() >= RESTS and DISAGREES * _stillest(size, scatter, quiet) < usually and any(
@@ -82,6 +89,36 @@ def seen(values, usual=USUAL):
     if quiet.mean() >= RESTS:
         return Gravity(_stillest(size, scatter, quiet), True)
     return Gravity(usually, False)
+
+
+def _windows(values):
+    """((n, 3) means, (n,) scatter) of windows of values, evenly over the file."""
+    number = len(values) // WINDOW
+    step = -(-number // MOST_WINDOWS)
+    windows = values[:number * WINDOW].reshape(number, WINDOW, 3)[::step].astype(float)
+    return windows.mean(axis=1), np.sqrt(windows.var(axis=1).sum(axis=1))
+
+
+def offset(values):
+    """The Offset of accelerometer values (n, 3) at rest, in their unit, held against none: by the
+    rests, each of which is one value, of a sphere about it or about 0 [BIC: Schwarz, Annals of
+    Statistics 6 (1978) 461]."""
+    mean, scatter = _windows(values)
+    size = np.linalg.norm(mean, axis=1)
+    quiet = scatter < QUIET * size
+    goes = np.linalg.norm(np.diff(mean, axis=0), axis=1) > QUIET * size[1:]
+    runs = np.split(np.arange(len(mean)), np.flatnonzero(goes | (quiet[1:] != quiet[:-1])) + 1)
+    rests = np.array([mean[run].mean(axis=0) for run in runs if quiet[run[0]]]).reshape(-1, 3)
+    square = (rests ** 2).sum(axis=1)
+    if not len(rests):
+        return Offset(np.zeros(3), 0.0, 0.0)
+    *twice, _ = np.linalg.lstsq(np.c_[rests, np.ones(len(rests))], square, rcond=1e-3)[0]
+    about = 0.5 * np.array(twice)
+    sizes = [np.linalg.norm(rests - centre, axis=1) for centre in (np.zeros(3), about)]
+    noise = np.median(scatter[quiet]) / math.sqrt(WINDOW)
+    plain, beside = (len(rests) * (size.var() + noise ** 2) for size in sizes)
+    nats = 0.5 * len(rests) * math.log(plain / beside) - 1.5 * math.log(len(rests))
+    return Offset(about, float(sizes[1].mean()), nats)
 
 
 def stays(values, rate_hz, one_g=math.inf):

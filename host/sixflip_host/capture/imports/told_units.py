@@ -52,7 +52,7 @@ class ToldUnits:
         self.is_gone = bool(seen) and not seen.rests and not gravity.stays(
             values, self.rate_hz, self._one_g(unit or step and step.unit))
         if unit is not None:
-            self._contradicted(unit, seen, told, said)
+            self._contradicted(unit, seen, told, said, values)
             if unit == "counts" and options.accel_lsb is None and told and told[0] == "counts":
                 self.assumed.append("the accelerometer has %d counts per g: |a| is %.0f" % (
                     told[1], seen.size))
@@ -60,7 +60,7 @@ class ToldUnits:
             return unit, options.accel_lsb
         if told is None and step is not None and self._may_be(step.unit, seen):
             self.assumed.append("the accelerometer is in %s: %s" % step)
-            self._contradicted(step.unit, seen, told, step.unit)
+            self._contradicted(step.unit, seen, told, step.unit, values)
             return step.unit, options.accel_lsb
         if told is None or self.is_gone and options.gravity:
             return self._without_gravity(seen, whole), options.accel_lsb
@@ -80,7 +80,7 @@ class ToldUnits:
         return not self.options.gravity or seen is None or (
             1 / gravity.DISAGREES <= seen.size * units.ACCEL_UNITS[unit] <= gravity.DISAGREES)
 
-    def _contradicted(self, unit, seen, told, said):
+    def _contradicted(self, unit, seen, told, said, values):
         """BadFile where gravity is off by a factor from what was said of the unit."""
         options = self.options
         per_unit = 1 / options.accel_lsb if unit == "counts" and options.accel_lsb else \
@@ -96,7 +96,7 @@ class ToldUnits:
         if not seen.rests:
             return
         if 1 / gravity.DISAGREES <= seen.size * per_unit <= gravity.DISAGREES:
-            self._far_from_1_g(seen.size * per_unit)
+            self._far_from_1_g(seen.size * per_unit, values, per_unit)
             return
         what = "--accel-lsb %g" % options.accel_lsb if unit == "counts" else \
             "--units %s" % options.units if said else "the unit that the file says, %s," % unit
@@ -116,11 +116,20 @@ class ToldUnits:
                               self.path, words, unit))
         self.remarks.append(words)
 
-    def _far_from_1_g(self, size):
-        """Says so where rests read farther from 1 g than any part that is whole."""
-        if abs(size - 1) > gravity.ZERO_G:
-            self.remarks.append("gravity is %.3g g in the rests of this file: its scale is off, "
-                                "or its unit is another one" % size)
+    def _far_from_1_g(self, size, values, per_unit):
+        """Says so where rests read farther from 1 g than any part that is whole, and whether it is
+        the scale or an offset, as far as they lie on different faces."""
+        if abs(size - 1) <= gravity.ZERO_G:
+            return
+        offset, words = gravity.offset(values), "its scale is off, or its unit is another one"
+        if offset.nats > gravity.TELLS:
+            own = offset.size * per_unit
+            words = "it has an offset of %s g, about which gravity is %.3g g%s" % (
+                ", ".join("%.2f" % (round(value, 2) + 0.0) for value in offset.about * per_unit),
+                own, "; " + words if abs(own - 1) > gravity.ZERO_G else "")
+        elif offset.nats > -gravity.TELLS:
+            words = "its scale or its offset is off, or its unit is another one"
+        self.remarks.append("gravity is %.3g g in the rests of this file: %s" % (size, words))
 
     def _without_gravity(self, seen, whole):
         """The unit of values that gravity does not tell; BadFile where it was to be told."""
