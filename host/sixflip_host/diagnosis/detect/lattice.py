@@ -114,6 +114,10 @@ def of_column(column, about=None):
     if size[k] < (BESIDE if about else IN_PHASE) or not present(nats):
         return COUNTS
     spacing = 1.0 / per_count[k]
+    # A bit that never changes leaves every other run of codes out as well.
+    if any(abs(spacing / (2 << bit) - 1.0) < SCALED
+           for bit, _ in registers.fixed_bits(column.astype(np.int64))):
+        return COUNTS
     first = -np.angle(spectrum[k]) / (2.0 * np.pi) * spacing - NEAR
     return Lattice(spacing, float(first - spacing * np.rint(first / spacing)))
 
