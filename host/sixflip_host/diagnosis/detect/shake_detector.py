@@ -102,10 +102,13 @@ def shaken(sessions):
     quiet = np.quantile(level, QUIET, axis=0)
     usual = np.median(level, axis=0)
     chance = float(np.sqrt(special.chdtri(fewest, 0.5) / special.chdtri(fewest, 1.0 - QUIET)))
-    above = max(SHAKEN, ABOVE_CHANCE * chance)
-    axes = [i for i in range(3) if usual[i] > above * max(quiet[i], 1e-9)]
-    if not axes:
+    times = usual / np.maximum(quiet, 1e-9)
+    if times.max() <= max(SHAKEN, ABOVE_CHANCE * chance):
         return []
+    # One thing shakes them all, or it shakes some: an axis is as loud as the loudest or as chance
+    # has it, whichever is nearer; and louder than that by itself in any case.
+    axes = np.flatnonzero(times > min(max(SHAKEN, ABOVE_CHANCE * chance),
+                                      np.sqrt(chance * times.max())))
     value, interval, score, power = {}, {}, 0.0, []
     for i in axes:
         ranked = np.sort(level[:, i])
