@@ -13,7 +13,7 @@ from scipy import linalg, ndimage
 
 from ...capture.registers import unit_of_count
 from .. import odds
-from . import line_wander
+from . import line_steadiness, line_wander
 
 # Share of the power of short stretches that has to go on in phase over the whole. All of a sine's
 # does; of what wanders by a bin of the short stretches, over two of them and more, half at most.
@@ -83,10 +83,12 @@ def peak(power, k):
 
 def refined(line, sessions, sensor):
     """The Line with its frequency by the longest unbroken stretch of each file, or by all its
-    rests where some tell it; where none keeps the phase it is not steady, and its amplitude is
-    that of all its bump; nor is it where it moves from rest to rest."""
+    rests where some tell it; where none keeps the phase, or it is no likelier a sine than a hump,
+    it is not steady, and its amplitude is that of all its bump; nor is it where it moves from rest
+    to rest."""
     seen = [(s.name, *sine) for s in sessions for sine in [_over_whole(line, s, sensor)] if sine]
-    if not seen or not line.narrow:  # what wanders has the power of all its bump, no lobe's alone
+    if not seen or not line.narrow or line_steadiness.nats(line, sessions, sensor) < 0.0:
+        # What wanders has the power of all its bump, no lobe's alone.
         return replace(line, low=line.hz - line.bin_hz, high=line.hz + line.bin_hz,
                        amplitude=line.bump or line.amplitude,
                        error=line.bump_error or line.error)
