@@ -150,3 +150,11 @@ def test_a_chips_steps_in_decimals_of_a_short_log_are_no_dead_band(tmp_path):
     gyro[:60] += np.rint(np.linspace(0, 2600, 60))[:, None] * 0.061
     assert "dead_band" not in found_in(
         tmp_path, gyro=gyro, accel=[0.0, 0.0, 1.0] + rng.normal(0, 0.003, (499, 3)))
+
+
+def test_a_chips_own_step_beside_finer_ones_of_a_file_is_no_coarse_one():
+    """1/2048 g in m/s2 of four decimals, of which import made counts of 1/10780.7 g."""
+    codes = np.rint(np.random.default_rng(14).normal(0.0, 60.0, (ROWS, 3)))
+    counts = np.rint(10780.7 / 2048 * codes).astype(int)
+    assert lattice.steps(counts, "accel", 10780.7).tolist() == [1, 1, 1]
+    assert lattice.steps(counts, "accel", 9000.0).tolist() == [5, 5, 5]

@@ -79,7 +79,7 @@ def counts_of(sensor, path, what, values, unit, lsb, per_unit, sizes):
     sizes: their Sizes."""
     step = sizes.step()
     grid = sizes.grid() if step is None and lsb is None and per_unit is not None else None
-    if grid is not None and _is_a_chips(sensor, grid[0] * per_unit):
+    if grid is not None and is_a_chips(sensor, grid[0] * per_unit):
         size, offsets = grid
         parts = units.ROOM * size / max(float(np.abs(values).max()), size)
         parts = 2 ** int(math.log2(min(max(parts, 1.0), PARTS[1])))
@@ -90,9 +90,9 @@ def counts_of(sensor, path, what, values, unit, lsb, per_unit, sizes):
     return units.counts_of(path, what, values, unit, lsb, per_unit, step)
 
 
-def _is_a_chips(sensor, size):
-    """Whether a size, in g or deg/s, is that of a chip's count."""
-    return any(abs(size / one - 1) < TELLS for one in SIZES[sensor][1])
+def is_a_chips(sensor, size, told=TELLS):
+    """Whether a size, in g or deg/s, known to such a part of it, is that of a chip's count."""
+    return any(abs(size / one - 1) < told for one in SIZES[sensor][1])
 
 
 def told(sensor, step):
@@ -125,7 +125,7 @@ def of_header(sensor, counts):
     own = int(np.gcd.reduce(np.diff(np.sort(counts.counts.astype(np.int64), axis=0), axis=0),
                             axis=None))
     of = SIZES[sensor][0]
-    if own < 2 or not (counts.counts % own).any() or not _is_a_chips(sensor, own / counts.lsb):
+    if own < 2 or not (counts.counts % own).any() or not is_a_chips(sensor, own / counts.lsb):
         return more, []
     if more:
         return {**more, name + "_own_step": own}, [

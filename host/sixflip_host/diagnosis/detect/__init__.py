@@ -6,7 +6,7 @@ missing_rows                       registers and timing
 byte_faults (course_likelihood), held_values (stuck_axes), unread_rows, row_order, wrong_scale
                                    damage: bytes, rows that repeat, that nobody read or that are
                                    out of order, full scales
-spectral_lines (rest_spectra, line_frequency, line_across_rests, line_wander),
+spectral_lines (rest_spectra, line_frequency, line_across_rests, line_steadiness, line_wander),
 noise_bursts, noise_shape, spikes (rest_parts), shake_detector
                                    lines of a spectrum, noise that changes, is shared or is not
                                    normal, single samples far off, what rings out after a move,

@@ -21,6 +21,8 @@ import numpy as np
 from scipy import special
 
 from ...capture import registers
+from ...capture.capture_header import ACCEL, GYRO
+from ...capture.imports import chip_steps
 from ...capture.registers import RAIL
 from .detection import present
 
@@ -36,6 +38,7 @@ IN_PHASE = 0.55
 # within what a calibration takes the scales of two axes apart.
 BESIDE, SCALED = 0.35, 0.03
 BROAD = 0.1  # below this the spectrum is no longer that of how far the readings reach
+TOLD = 0.005  # of a spacing: half a count over the readings next to 0
 COMMON = 0.75  # quantile of the counts that are read, of which no more counts: what rests at one
 
 # Of a converter's missing codes: the longest period of low bits, in codes; how often a code is
@@ -83,12 +86,16 @@ def of_columns(counts):
             for one, column in zip(alone, counts.T)]
 
 
-def steps(counts):
-    """(3,) counts from a value to the next of columns (n, 3): their common divisor, or, where an
-    offset or a factor leaves them none, the whole number next to the spacing of their values."""
+def steps(counts, sensor, per_unit):
+    """(3,) counts from a value to the next of columns (n, 3) of "accel" or "gyro": their common
+    divisor, or, where an offset or a factor leaves them none, the whole number next to the spacing
+    of their values; 1 where that is a chip's own step, beside which the file's are finer.
+    per_unit: counts per g or deg/s."""
+    kind = {"accel": ACCEL, "gyro": GYRO}[sensor]
+    spacings = [1 if chip_steps.is_a_chips(kind, one.spacing / per_unit, TOLD) else one.spacing
+                for one in of_columns(counts)]
     divisors = registers.steps(counts)
-    return np.where(divisors > 1, divisors, np.rint(
-        [one.spacing for one in of_columns(counts)])).astype(int)
+    return np.where(divisors > 1, divisors, np.rint(spacings)).astype(int)
 
 
 def of_column(column, about=None):
