@@ -207,8 +207,7 @@ def _of_whole_axes(sessions):
 
 
 def _of_registers(sensor, sessions):
-    """list of Finding of a sensor's registers over all sessions: steps (common divisor), a dead
-    band, rails, clipped peaks, torn reads."""
+    """[Finding] of a sensor's registers: steps, a dead band, rails, clipped peaks, torn reads."""
     columns = [getattr(s.capture, sensor) for s in sessions]
     if any(c is None for c in columns):
         return []
@@ -217,9 +216,9 @@ def _of_registers(sensor, sessions):
     band = dead_band.findings(sensor, columns, [s.at_rest for s in sessions], min(
         noise) / QUIETEST / registers.unit_of_count(meta, sensor))
     # Of a file of decimals the counts are none of a chip's: what it counts in is its own step.
-    per_unit = meta[registers.SCALES[sensor]]
-    steps = [lattice.steps(c, sensor, per_unit) if registers.own_counts(s.capture, sensor)
-             else registers.steps(c) for s, c in zip(sessions, columns)]
+    steps = [lattice.steps(c, sensor, meta[registers.SCALES[sensor]])
+             if registers.own_counts(s.capture, sensor) else registers.steps(c)
+             for s, c in zip(sessions, columns)]
     steps = [np.where(found > s.capture.meta.get(sensor + "_own_step", 1), found, 1)
              for s, found in zip(sessions, steps)]
     return (agreed_by_axis("quantisation", sensor, steps,

@@ -16,8 +16,7 @@ GRID_HZ = alignment.GRID_HZ
 BLOCK_S, FINE_S = 1.0, 0.25  # of the path: the first by how fast both turn, then by all axes
 INDEPENDENT_HZ = alignment.BAND_HZ  # a block's readings are as many as it has periods of the band
 REACH_S = (2.0, 20.0)  # of the lag at least, and at most: some hundreds of lost rows a minute
-STEP = 3.0  # nats of a step of one lag, a hundredth of a second, where the lag wanders
-LARGE = 2  # of such steps at most; what is larger is a jump
+STEP, LARGE = 3.0, 2  # nats of a step of one lag, 0.01 s, where it wanders; more is a jump
 ROUNDS = 4  # of a line that takes the small steps' sum for its own pace, and of least squares
 PACES = (1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3)  # of a random walk from knot to knot: by half-decades
 LEVEL_S = 0.1  # of the wander, whose mean is the offset's
@@ -54,8 +53,7 @@ class Line:
 @dataclass(frozen=True)
 class Fitted:
     """A Line; sigma (k,): of its sizes; left (n, 3); turn (4, 3): the simulator's rates by the
-    real ones and 1; cost: nats of what is free in it; found: share of what turns a log, of that of
-    which it is more, in the rows by which it was fitted."""
+    real ones and 1; cost: nats of what is free; found: largest share of a log's turns used."""
 
     line: Line
     sigma: np.ndarray
@@ -74,9 +72,8 @@ class Turns:
     at rest; real_read, sim_read: as they were read."""
 
     def __init__(self, real, sim):
-        self.real_read, self.sim_read = _turns(real), _turns(sim)
-        self.real, self.sim = (alignment.smooth(turns, GRID_HZ)
-                               for turns in (self.real_read, self.sim_read))
+        read = self.real_read, self.sim_read = _turns(real), _turns(sim)
+        self.real, self.sim = (alignment.smooth(turns, GRID_HZ) for turns in read)
         self.end_s = (len(self.real) - 1) / GRID_HZ
         self.spline = CubicSpline(np.arange(len(self.real)) / GRID_HZ, self.real)
 
@@ -127,8 +124,8 @@ def costs(x, y, block, middle, reach):
     longer = x[np.clip(rows, 0, len(x) - 1)] * ((rows >= 0) & (rows < len(x)))[:, None]
     power = np.concatenate([[0.0], np.cumsum((longer ** 2).sum(axis=1))])
     left = np.empty((number, 2 * reach + 1), np.float32)
-    for k in range(number):
-        a, own = k * block, y[k * block:(k + 1) * block]
+    for k, a in enumerate(range(0, number * block, block)):
+        own = y[a:a + block]
         cross = sum(np.correlate(longer[a:a + block + 2 * reach, i], own[:, i], "valid")
                     for i in range(y.shape[1]))
         left[k] = power[a + block:a + block + 2 * reach + 1] - power[a:a + 2 * reach + 1] \
@@ -150,9 +147,8 @@ def least_path(nats, jump, step):
             own[to] = np.where(nearer, best[source] + step, own[to])
             back[k, to] = np.where(nearer, lags[source], back[k, to])
         least = int(best.argmin())
-        nearer = best[least] + jump < own
-        back[k, nearer] = least
-        best = np.where(nearer, best[least] + jump, own) + nats[k]
+        back[k, best[least] + jump < own] = least
+        best = np.minimum(best[least] + jump, own) + nats[k]
     path = [int(best.argmin())]
     for each in back[:0:-1]:
         path.append(int(each[path[-1]]))
@@ -221,10 +217,10 @@ def fitted(logs, line, wanders=False):
         size, sigma = size + inverse @ against, np.sqrt(np.diag(inverse).clip(0.0))[2:2 + jumps]
         line = replace(line, offset=size[0], drift=size[1], sizes=size[2:2 + jumps],
                        wander=size[2 + jumps:])
-    found = max((y[keep] ** 2).sum() / (y ** 2).sum(),
-                THINNED * (signal ** 2).sum() / (logs.real ** 2).sum())
-    return Fitted(line, sigma, left, turn[[0, 1, 2, -1]],
-                  of_walk + jumps * np.log(len(t) * REACH_S[0] * GRID_HZ), float(found))
+    found = max(np.linalg.norm(y[keep]) ** 2 / np.linalg.norm(y) ** 2,
+                THINNED * np.linalg.norm(signal) ** 2 / np.linalg.norm(logs.real) ** 2)
+    return Fitted(line, sigma, left, turn[[0, 1, 2, -1]], of_walk + jumps * np.log(
+        len(t) * REACH_S[0] * GRID_HZ), found)
 
 
 def _hats(t, number):
