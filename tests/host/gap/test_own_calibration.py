@@ -81,7 +81,8 @@ def test_a_gyro_whose_moves_make_no_sense_is_not_known(scattered, scale, known):
     off = generator.standard_normal((len(ups), 3))
     ups = np.array(ups) + scattered * off / np.linalg.norm(off, axis=1)[:, None]
     ups /= np.linalg.norm(ups, axis=1)[:, None]
-    trace = SimpleNamespace(t=t, rests=tuple(rests), rate=rate * scale)
+    trace = SimpleNamespace(t=t, rests=tuple(rests), rate=rate * scale, noise={},
+                            quantum=(0.0, 0.0))
     at_rest = own_rests.AtRest(G * ups, np.zeros(9), np.eye(9) * 1e-8)
     _, gyro, sigma = own_calibration.by_carry(trace, rate * scale, at_rest)
     if known:
@@ -89,6 +90,26 @@ def test_a_gyro_whose_moves_make_no_sense_is_not_known(scattered, scale, known):
         assert (np.abs(gyro - np.eye(3) / scale) < 4.0 * sigma).all()
     else:
         assert np.abs(gyro - np.eye(3)).max() < 0.1 and sigma.min() > 0.02
+
+
+@pytest.mark.parametrize("noise, counted", [(0.0, True), (0.001, False)])
+def test_a_simulator_that_turns_at_one_speed_is_not_cut_off(noise, counted):
+    """Without noise the same rate is read again and again; with noise, only at the range's end."""
+    generator = np.random.default_rng(8)
+    t, axes = np.arange(0.0, 120.0, 0.02), np.eye(3)
+    attitude, rate, ups, rests = Rotation.identity(), np.zeros((len(t), 3)), [], []
+    for k in range(24):
+        first = 250 * k
+        rests.append((first, first + 100))
+        ups.append(attitude.inv().apply([0.0, 0.0, 1.0]))
+        rate[first + 100:first + 200] = 0.4 * axes[k % 3]
+        attitude = attitude * Rotation.from_rotvec(0.8 * axes[k % 3])
+    rate = np.clip(rate + noise * generator.standard_normal(rate.shape), -0.4, 0.4)
+    trace = SimpleNamespace(t=t, rests=tuple(rests), rate=rate, quantum=(0.01, 1e-4), noise={
+        "gyro": SimpleNamespace(per_sample=np.full(3, noise))})
+    at_rest = own_rests.AtRest(G * np.array(ups), np.zeros(9), np.eye(9) * 1e-8)
+    sigma = own_calibration.by_carry(trace, rate, at_rest)[2]
+    assert (sigma.max() < 0.01) == counted
 
 
 def number(value, half, difference, apart):

@@ -26,11 +26,11 @@ HEADINGS = 48  # each 7.5 degrees: within SIGMA of the true one
 
 def moves(trace):
     """[(rest before, rest after, increments (k, 3) rad)] of the gyro, in short steps, of moves in
-    which it does not stand at its limit: it turned farther than it says then."""
+    which it was not cut off: it turned farther than it says then."""
     if trace.rate is None:
         return []
     rate = trace.rate - traces.rest_line(trace, trace.rate)
-    ways, cut = [], single_log.at_limit(trace.rate)
+    ways, cut = [], single_log.gyro_cut_off(trace)
     for k in range(len(trace.rests) - 1):
         first, last = trace.rests[k][1] - 1, trace.rests[k + 1][0]
         if cut[first:last].any():

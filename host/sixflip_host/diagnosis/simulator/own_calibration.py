@@ -114,9 +114,9 @@ def by_carry(trace, rate, at_rest):
     rests that lie alike its bias, turns gravity at every rest and would pass for the gyro's: it is
     fitted with the gyro's matrix, and so known better. Over bumps the samples lie too far apart:
     how much that matters is what every second of them makes of the same move. Moves are weighed by
-    Student's t besides; one in which the gyro stands at its limit turned farther than it says.
+    Student's t besides; one in which the gyro was cut off turned farther than it says.
     """
-    cut = single_log.at_limit(trace.rate)
+    cut = single_log.gyro_cut_off(trace)
     accel, gyro, wider = at_rest.p, np.zeros(9), 1.0
     prior = np.zeros((18, 18))
     prior[:9, :9] = np.linalg.inv(at_rest.covariance)

@@ -131,6 +131,12 @@ def at_limit(values):
                    for x, end in zip(values.T, map(limit, values.T))], axis=0)
 
 
+def gyro_cut_off(trace):
+    """(n,): rows in which the gyro of a Trace stands at its limit, and turned faster than it says.
+    One without noise may turn as fast as ever again and again."""
+    return np.zeros(len(trace.t), bool) if silent(trace, "gyro") else at_limit(trace.rate)
+
+
 def rounding(kind, logs, number, band_hz):
     """(number, 3) of as much noise as the rounding of both logs leaves in the band: two that were
     made of the same samples, and one that has no noise, which rounds what is slow the same way
