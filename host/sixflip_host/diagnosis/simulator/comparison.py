@@ -228,7 +228,7 @@ def numbers_of(real, sim, mended, own, fits, findings):
                or c.name in convention_findings.OF_ATTITUDE and not real.rests]
     usable = {k: not any(c.sensor in (k, "device") for c in spoiled) for k in ("accel", "gyro")}
     densities, on_noise = noise_and_registers.noises(real, mended)
-    rounded = {kind: sim.quantum[kind == "gyro"] / np.sqrt(12.0) for kind in fits
-               if single_log.silent(sim, kind)}
+    rounded = {kind: mended.quantum[kind == "gyro"] / np.sqrt(12.0) for kind in fits
+               if single_log.silent(mended, kind)}
     return (parameters.shapes(*own, fits, usable, rounded) + densities
             + noise_and_registers.registers(real, sim), on_noise)

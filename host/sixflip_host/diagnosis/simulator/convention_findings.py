@@ -193,11 +193,14 @@ def merged(findings):
 
 
 def trace_put_right(log, findings):
-    """The Trace with axes, signs and units as the Conventions say they should be."""
-    force = log.force @ _matrix(findings, "accel") / _unit(findings, "accel")
-    rate = None if log.rate is None else log.rate @ _matrix(findings, "gyro") / _unit(
-        findings, "gyro")
-    return replace(log, force=force, rate=rate)
+    """The Trace with axes, signs and units, those of its counts too, as the Conventions say they
+    should be."""
+    units = [_unit(findings, kind) for kind in ("accel", "gyro")]
+    force = log.force @ _matrix(findings, "accel") / units[0]
+    rate = None if log.rate is None else log.rate @ _matrix(findings, "gyro") / units[1]
+    quantum = tuple(None if count is None else count / unit
+                    for count, unit in zip(log.quantum, units))
+    return replace(log, force=force, rate=rate, quantum=quantum)
 
 
 def capture_put_right(log, findings):

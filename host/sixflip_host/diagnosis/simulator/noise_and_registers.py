@@ -45,10 +45,13 @@ def noises(real, sim):
         unit = "mg/√Hz" if kind == "accel" else "°/s/√Hz"
         floor = [x.quantum[0 if kind == "accel" else 1] for x in (real, sim)]
         silent = single_log.silent(sim, kind)
-        # A channel that says nothing is a convention, and in steps that are coarse the real one's
-        # noise does not show.
-        heard = [i for i in range(3) if np.ptp(values[1][:, i]) and not single_log.step(
-            values[0], floor[0])[i] > COARSE * (a if silent else b).per_sample[i] > 0]
+        # A channel that says nothing is a convention, and in steps that are coarse the noise of
+        # either does not show.
+        heard = np.ptp(values[1], axis=0) > 0
+        for own, count, other in zip(values, floor, (a if silent else b, a)):
+            heard &= (single_log.step(own, count) <= COARSE * other.per_sample) | (
+                other.per_sample <= 0)
+        heard = np.flatnonzero(heard)
         densities = a.density * scale, np.zeros(3) if silent else b.density * scale
         for i, apart in zip(heard, standard_errors_apart(
                 a, b, *(np.maximum(x[heard], 1e-12) for x in densities))):
