@@ -154,7 +154,10 @@ def _beside_simulators(diagnosis):
                     "both in one motion, the real one with its motors off or on softer ground")
     if diagnosis.comparisons and not any(x.alignment.same for x in diagnosis.comparisons):
         moving = any(x.alignment.moving for x in diagnosis.comparisons)
-        return "%s, and what each shows by itself is not enough" % (
+        alike = sorted({p.name.replace("_", " ") for x in diagnosis.comparisons
+                        for p in x.parameters if p.difference_interval and not p.differs})
+        return "%s%s, and what each shows by itself is not enough" % (
+            "%s are alike in both, but " % ", ".join(alike) if alike else "",
             "the two logs are of different motions" if moving else "neither log moves"), \
             "the simulator in the motion of the real log, with rests of some seconds"
     return None

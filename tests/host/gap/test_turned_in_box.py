@@ -3,6 +3,7 @@ sensor's misalignment, and which of the two is turned in its box."""
 import numpy as np
 import pytest
 
+from sixflip_host.diagnosis import diagnose
 from sixflip_host.diagnosis.detect import wrong_scale
 from sixflip_host.diagnosis.simulator import (
     comparison,
@@ -12,6 +13,7 @@ from sixflip_host.diagnosis.simulator import (
     turned_in_box,
 )
 from sixflip_host.experiment import blocks
+from sixflip_host.planning import next_capture
 from tests.worlds import guided
 
 OFF = ~np.eye(3, dtype=bool)
@@ -117,3 +119,12 @@ def test_a_unit_that_is_put_right_has_its_counts_too():
     assert [(c.name, c.sensor) for c in found.conventions] == [("gyro_unit", "gyro")]
     assert [(p.name, p.axis) for p in found.differs if p.sensor == "gyro"] in (
         [], [("step", axis) for axis in "xyz"])
+
+
+def test_what_was_found_alike_is_said_of_different_motions():
+    """"This capture cannot tell", of two logs whose biases, scales and misalignments agree."""
+    real, sim = (guided.session(seed) for seed in (1300, 1301))
+    found = diagnose.diagnose([("real", real)], simulator=[("simulator", sim)])
+    assert found.verdict == "cannot tell"
+    assert next_capture.untold(found)["why"].startswith(
+        "bias, misalignment, noise density, scale are alike in both, but the two logs are of")
