@@ -24,21 +24,15 @@ def compared(change, seed=1):
 
 
 @pytest.mark.long
-def test_what_levels_off_softly_has_a_range_and_no_other_scale():
-    found = compared(soft)
-    ranges = {p.axis: p.real for p in found.differs if p.name == "range"}
-    assert ranges and all(level == pytest.approx(80.0, rel=0.04) for level in ranges.values())
-    assert "scale" not in {p.name for p in found.differs if p.sensor == "gyro"}
-
-
-@pytest.mark.long
-def test_where_it_stops_is_a_range_and_no_scale(monkeypatch):
+@pytest.mark.parametrize("change", [cut, soft])
+def test_where_it_stops_is_a_range_and_no_scale(change, monkeypatch):
     """It was a scale that is some percent less, and most of the gap was left."""
-    found = compared(cut)
+    found = compared(change)
     ranges = {p.axis: p.real for p in found.differs if p.name == "range"}
     assert ranges and all(level == pytest.approx(80.0, rel=0.04) for level in ranges.values())
+    assert "delay" not in {p.name for p in found.differs}
     monkeypatch.setattr(one_motion, "stops_of", lambda fits: {})
-    without = compared(cut)
+    without = compared(change)
     assert scale(found) < 0.6 < 1.5 < scale(without)
     assert found.gap["gyro"][1] < 0.2 * without.gap["gyro"][1]
 

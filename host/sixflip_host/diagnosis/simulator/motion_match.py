@@ -199,8 +199,9 @@ def in_step(fitted, kind, real, sim, alignment):
         return found
     moved = fitted(replace(alignment, offset_s=alignment.offset_s - late))
     # Of readings that stop somewhere the lag is one of what is left of them: with it they have no
-    # name any more.
-    if found.fit.name and not moved.fit.name:
+    # name any more, or more of them is left than without.
+    less, more = ((one.fit.left[:, one.live] ** 2).mean() for one in (found, moved))
+    if found.fit.name and (not moved.fit.name or more > less):
         return found
     return replace(moved, fit=replace(moved.fit, delay_s=moved.fit.delay_s + late))
 
