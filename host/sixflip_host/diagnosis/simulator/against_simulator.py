@@ -83,7 +83,7 @@ class Simulator:
         return [f for f in self.diagnosis.findings if (f.effect, f.sensor) not in real
                 and (in_motion or f.domain != "motion")
                 and not shaken_alike.alike(self.diagnosis.sessions, sessions, f.sensor,
-                              {line.letter: line.hz for line in f.lines})]
+                                           {line.letter: line.hz for line in f.lines})]
 
 
 def _size(finding, key):
