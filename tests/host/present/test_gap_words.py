@@ -65,8 +65,8 @@ def test_a_verdict_that_cannot_tell_says_why_and_what_to_record():
     (("axes", "gyro_unit"), (), True, True, "cannot tell which, between log and sim",
      "every axis"),
     ((), ("gyro",), True, True, "more of the gyro is left between log and sim", "one motion"),
-    ((), (), False, True, "gyro scale x are alike in both, but the two logs are of different motions",
-     "the simulator in the motion of the real log"),
+    ((), (), False, True, "gyro scale x are alike in both, but the two logs are of different"
+     " motions", "the simulator in the motion of the real log"),
     ((), (), False, False, "neither log moves", "")])
 def test_two_logs_that_cannot_tell_say_why(one_of, shaken, same, moving, why, record):
     beside = SimpleNamespace(
