@@ -18,12 +18,17 @@ def tumbled(seed, seconds=120.0):
     way = way ** 2 * (3.0 - 2.0 * way)
     rate = sum(size * np.sin(2.0 * np.pi * hz * t[:, None] + rng.uniform(0.0, 6.28, 3))
                for size, hz in ((70.0, 0.11), (50.0, 0.29), (25.0, 0.53))) * way[:, None]
-    turn = Rotation.identity()
-    turns = []
-    for step in np.radians(rate) / RATE_HZ:
-        turns.append(turn.as_matrix())
-        turn = turn * Rotation.from_rotvec(step)
-    return t, np.array(turns)[:, 2, :], rate
+    return t, attitudes(rate)[:, 2, :], rate
+
+
+def attitudes(rate):
+    """(n, 3, 3): body to world at each sample, from what turns at rate (n, 3) deg/s between it
+    and the next."""
+    turn, turns = np.eye(3), []
+    for step in Rotation.from_rotvec(np.radians(rate) / RATE_HZ).as_matrix():
+        turns.append(turn)
+        turn = turn @ step
+    return np.array(turns)
 
 
 def read(t, force, rate, seed):

@@ -209,17 +209,22 @@ def uneven(sizes, left, own, columns, rows, weights, prior):
     size = 3 * p + columns.shape[2]
     grams, pulls = np.zeros((number.max() + 1, size, size)), np.zeros((number.max() + 1, size))
     every = np.concatenate([own, columns.reshape(n, -1), left], 1) * rows[:, None]
-    for first in range(0, n - long + 1, long):
-        spectra = np.fft.rfft(every[first:first + long] * window[:, None], axis=0)
-        for octave in range(len(grams)):
-            some = spectra[number == octave]
-            some = np.concatenate([some.real, some.imag]) * np.sqrt(2.0 / long)
-            shared = some[:, p:-3].reshape(len(some), 3, -1)
-            for c in range(3):
-                of_channel = np.concatenate([some[:, :p], shared[:, c]], 1)
-                place = np.r_[c * p:(c + 1) * p, 3 * p:size]
-                grams[octave][np.ix_(place, place)] += weights[c] * of_channel.T @ of_channel
-                pulls[octave][place] += weights[c] * of_channel.T @ some[:, c - 3]
+    parts = every[:n // long * long].reshape(-1, long, every.shape[1]) * window[:, None]
+    spectra = np.fft.rfft(parts, axis=1) * np.sqrt(2.0 / long)
+    mine, all_share = [slice(c * p, (c + 1) * p) for c in range(3)], slice(3 * p, size)
+    for gram, pull, octave in zip(grams, pulls, range(len(grams))):
+        some = spectra[:, number == octave].reshape(-1, every.shape[1])
+        some = np.concatenate([some.real, some.imag])
+        each, shared = some[:, :p], some[:, p:-3].reshape(len(some), 3, -1)
+        of_own = each.T @ each
+        for c, a in enumerate(mine):
+            of_channel = np.ascontiguousarray(shared[:, c])
+            gram[a, a] = weights[c] * of_own
+            gram[a, all_share] = weights[c] * each.T @ of_channel
+            gram[all_share, a] = gram[a, all_share].T
+            gram[all_share, all_share] += weights[c] * of_channel.T @ of_channel
+            pull[a] = weights[c] * each.T @ some[:, c - 3]
+            pull[all_share] += weights[c] * of_channel.T @ some[:, c - 3]
     whole, far = grams.sum(axis=0), 0.0
     scale = np.sqrt(np.diag(whole) + prior ** -2.0)
 

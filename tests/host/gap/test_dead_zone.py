@@ -2,13 +2,12 @@
 of its size, and no scale."""
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from sixflip_host.capture.capture import Capture
 from sixflip_host.diagnosis import answer
 from sixflip_host.diagnosis.diagnose import diagnose
 from sixflip_host.diagnosis.simulator import comparison, dead_zone, traces
-from tests.worlds.tumbled import META, RATE_HZ, read, tumbled
+from tests.worlds.tumbled import META, attitudes, read, tumbled
 
 TRUE = 3.0  # deg/s
 
@@ -132,11 +131,8 @@ def test_a_log_in_other_axes_is_not_asked():
 def test_what_turns_it_may_not_answer_and_the_forces_say_so(change):
     """A motor that does not start below some rate: the gyro is sound, and was blamed."""
     t, force, rate = tumbled(1, 60.0)
-    turn, forces = Rotation.identity(), []
-    for step in np.radians(change(rate)) / RATE_HZ:
-        forces.append(turn.as_matrix()[2])
-        turn = turn * Rotation.from_rotvec(step)
-    moved, simulated = read(t, np.array(forces), change(rate), 1), read(t, force, rate, 101)
+    moved = read(t, attitudes(change(rate))[:, 2], change(rate), 1)
+    simulated = read(t, force, rate, 101)
     diagnosed = diagnose([("real", moved)], [("sim", simulated)], jobs=1)
     found, = diagnosed.comparisons
     assert found.bands and found.of_gyro <= 0.0 and "gyro" in found.shaken

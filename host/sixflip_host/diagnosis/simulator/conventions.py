@@ -138,13 +138,15 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, own_real, *ot
     rows = local_noise(first.left[:, live])
     inflation = align_by.independent(first.left[:, live] / rows[:, None])
 
+    def in_full(fit):
+        return whole(fit, inflation, rows)
+
     def kept(named, fit):
-        fit = whole(fit, inflation, rows)
         return without_smoothing(SensorFit(kind, named, fit, inflation, pair, fit.hypothesis, own,
                                            live, noise_bends), rows)
 
     def best_of(fits):
-        return kept(*posterior(kind, fits, live, *other))
+        return kept(*posterior(kind, fits, live, in_full, *other))
 
     known = 0.0 if None in (noise, theirs) else 2.0 * pair.band_hz * (
         noise.density ** 2 + theirs.density ** 2)
@@ -157,7 +159,7 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, own_real, *ot
         best = best_of(fits)
         if doubt := best.fit.name and numbers_told.doubted(best, known):
             return kept((convention_findings.one_of(kind, (), *doubt),),
-                        max((f for f in fits if not f.name), key=lambda f: f.log))
+                        in_full(max((f for f in fits if not f.name), key=lambda f: f.log)))
         if best.fit.name:
             return best
     other = best_of([f for f in fits if f.name])
@@ -215,20 +217,21 @@ def local_noise(left):
     return level / np.sqrt((level ** 2).mean())
 
 
-def posterior(kind, fits, live, swapped=None, said=()):
-    """(Conventions, the best Fit); swapped, said: of the other sensor, see prior()."""
+def posterior(kind, fits, live, in_full, swapped=None, said=()):
+    """(Conventions, the best Fit in full); in_full(fit): a Fit with its errors and with what it
+    leaves; swapped, said: of the other sensor, see prior()."""
     # A factor that is no wrong time step would part what moves it from gravity: no scale does.
     fits = [f for f in fits if f.name != "time_step" or abs(f.extra[0]) >= LEAST_STEP]
     named = [evidence_of_logs.names(f, kind, live) for f in fits]
     logs = np.array([f.log + sum(np.log(prior(n, f, swapped, said)) for n in each) + (
         np.log(PRIOR_HEALTHY) if not each else 0.0) for f, each in zip(fits, named)])
     top = int(logs.argmax())
-    best = fits[top]
+    best = in_full(fits[top])
     findings = convention_findings.told(
         named, logs, POSSIBLE, kind, lambda name, probability, nats:
         convention_findings.described(name, kind, best, probability, nats, live))
     if named[top] and not findings:
-        best = max((f for f, each in zip(fits, named) if not each), key=lambda f: f.log)
+        best = in_full(max((f for f, each in zip(fits, named) if not each), key=lambda f: f.log))
     return tuple(findings), best
 
 

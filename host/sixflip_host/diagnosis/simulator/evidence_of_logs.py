@@ -85,7 +85,8 @@ def fits(hypothesis, measured, kind, grid_hz, inflation=1.0, own=None, live=None
 
 def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, rows, left=True,
             noise_bends=(0.0, 0.0)):
-    """The Fit of a Hypothesis with one S; left: with what it does not predict of every sample."""
+    """The Fit of a Hypothesis with one S; left: with what it does not predict of every sample, and
+    with errors that take account of that; one of many fits is compared by its evidence alone."""
     n = len(measured)
     delay, k = 0.0, h.columns.shape[2]
     target = measured / unit
@@ -114,7 +115,7 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
                                  for width in own_sd], axis=1)
         result = regression((target - signal)[some], np.concatenate(own, 1), widths, columns,
                             mean, sd, inflation, live, rows if rows is None else rows[some],
-                            residuals=last, every=every)
+                            residuals=last and left, every=every)
         delay += float(np.clip(result[2][k], -0.05, 0.05))
     log, beta, shared, sigma, rest, beta_sigma = result
     # Of a channel that reads a part of the signal only, the smoothing is that of the part.
@@ -189,10 +190,11 @@ def shifted(x, rows, every=1):
     at = np.clip(wanted, 0, n - 1)
     beyond = wanted - at
     first = np.clip(at.astype(int) - (number // 2 - 1), 0, n - number)
-    at = (at - first).reshape((-1,) + (1,) * (x.ndim - 1))
+    # All but those near the ends lie alike between their points: a few weights are those of all.
+    alike, which = np.unique(np.round(at - first, 9), return_inverse=True)
     points = range(number)
-    moved = sum(np.prod([(at - m) / (k - m) for m in points if m != k], axis=0) * x[first + k]
-                for k in points)
+    moved = sum(np.prod([(alike - m) / (k - m) for m in points if m != k], axis=0)[which].reshape(
+        (-1,) + (1,) * (x.ndim - 1)) * x[first + k] for k in points)
     for end, slope in ((beyond < 0.0, x[:2]), (beyond > 0.0, x[-2:])):
         if len(slope) == 2 and end.any():
             moved[end] += np.multiply.outer(beyond[end], slope[1] - slope[0])

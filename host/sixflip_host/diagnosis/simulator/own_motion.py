@@ -92,7 +92,7 @@ def fitted(trace, sensor):
         keep = groups != number
         parts.append(regression(
             (force - signal)[keep], own[keep], sds, columns[keep], np.zeros(7), prior, inflation,
-            live, rows[keep])[2])
+            live, rows[keep], residuals=False)[2])
     parts = np.array(parts)
     apart = parts - parts.mean(axis=0)
     covariance = result[6] + (len(parts) - 1.0) / len(parts) * apart.T @ apart
