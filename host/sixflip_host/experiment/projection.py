@@ -121,9 +121,10 @@ def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
     raw, fewer = (y, own, columns), max(1, n // MOST_ROWS) if every == 1 else 1
     weight, y, own, columns = (x[::fewer] for x in (weight, y, own, columns))
     n, k_rows = n * every, every * fewer
-    y = y - columns @ mean
-    y, own, columns = y * weight[:, None], own * weight[:, None], columns * weight[:, None, None]
-    columns = np.ascontiguousarray(columns.transpose(1, 0, 2))  # of each channel: products' speed
+    y = (y - columns @ mean if mean.any() else y) * weight[:, None]
+    own = own * weight[:, None]
+    # Of each channel, and as rows that lie together: that is the speed of the products.
+    columns = np.multiply(columns.transpose(1, 0, 2), weight[:, None], order="C")
     size = 3 * p + k
     prior = np.concatenate([np.broadcast_to(own_sd, (3, p)).ravel(), sd])
     variance = np.maximum((y - y.mean(axis=0)).var(axis=0), LEAST_LEFT)

@@ -19,6 +19,8 @@ from .sensor_axes import DEAD
 HEADING = float(np.log(2.0 * np.pi / (np.sqrt(2.0 * np.pi) * SHAPE)))
 LEAST_FACTOR = 1e-3  # of a channel: it reads nothing; with the other sign it is another axis
 ODD = 0.01  # share of the logs whose header says another full scale than the part has, or none
+# Of a delay: the columns of the slope and the bend foretell so little to 1e-7 of a wave of 10 Hz.
+SETTLED_S = 1e-4
 POINTS = 6  # off by 1e-3 at the end of the widest band, eight rows a period
 
 
@@ -116,7 +118,10 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
         result = regression((target - signal)[some], np.concatenate(own, 1), widths, columns,
                             mean, sd, inflation, live, rows if rows is None else rows[some],
                             residuals=last and left, every=every)
-        delay += float(np.clip(result[2][k], -0.05, 0.05))
+        step = float(np.clip(result[2][k], -0.05, 0.05))
+        delay += step
+        if not left and abs(step) < SETTLED_S:
+            break
     log, beta, shared, sigma, rest, beta_sigma = result
     # Of a channel that reads a part of the signal only, the smoothing is that of the part.
     part = np.maximum(1.0 + np.diag(beta[:, :3]) + (shared[:h.scaled] if h.scaled else 0.0), DEAD)
