@@ -8,12 +8,14 @@ from scipy.spatial.transform import Rotation
 
 from sixflip_host.capture.attitude import carried, rotations
 from sixflip_host.diagnosis.simulator import (
+    comparison,
     gravity_directions,
     own_calibration,
     own_rests,
     remaining_gap,
 )
 from sixflip_host.present import simulator_words
+from tests.worlds import guided
 
 G = 9.80665
 MATRIX = np.array([[1.02, 0.004, 0.0], [0.004, 0.99, -0.006], [0.0, -0.006, 1.01]])
@@ -163,3 +165,10 @@ def test_a_gyro_carries_gravity_as_well_as_its_matrix_is_known(way):
     told = gravity_directions.carries(steps, carried(rotations(steps)), up)
     gyro = np.sqrt(max(told ** 2 - gravity_directions.SIGMA ** 2, 0.0))
     assert gyro == pytest.approx(np.sqrt(np.mean(np.square(off)) / 2.0), rel=0.2, abs=0.002)
+
+
+def test_a_sign_of_another_motion_is_that_of_gravity_or_of_all_the_force():
+    """It was said to be gravity's; what else moves the box was another thing in either log."""
+    turned, = comparison.compare([("real", guided.session(1))], "sim", guided.session(
+        2, accel=-2.0 * np.eye(3))).conventions
+    assert turned.sensor == "accel" and turned.one_of == ("force_sign", "gravity_sign")

@@ -99,11 +99,11 @@ def one_of(sensor, candidates, probability, nats):
     return Convention("unknown", sensor, probability, nats, words, one_of=tuple(known))
 
 
-def told(named, logs, possible, sensor, described):
+def told(named, logs, possible, sensor_of, described):
     """[Convention] of the likeliest of several hypotheses: what each says the simulator does
     otherwise (named, () is healthy), their log probabilities (n,). Where no name is certain, one
-    of sensor's that may be any of those of hypotheses with more than the probability possible;
-    described: of (name, probability, nats over the healthy one)."""
+    that may be any of those of hypotheses with more than the probability possible, of the sensor
+    that sensor_of them; described: of (name, probability, nats over the healthy one)."""
     weights = special.softmax(logs)
     nats = float(logs.max() - max(v for names, v in zip(named, logs) if not names))
     findings = []
@@ -117,7 +117,7 @@ def told(named, logs, possible, sensor, described):
         strange = sum(w for names, w in zip(named, weights) if "unknown" in names)
         candidates = set() if strange > NAMELESS else {
             n for names, w in zip(named, weights) if w > possible for n in names}
-        findings.append(one_of(sensor, sorted(candidates), 1.0 - quiet, nats))
+        findings.append(one_of(sensor_of(candidates), sorted(candidates), 1.0 - quiet, nats))
     return findings
 
 

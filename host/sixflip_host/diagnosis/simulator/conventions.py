@@ -228,7 +228,7 @@ def posterior(kind, fits, live, in_full, swapped=None, said=()):
     top = int(logs.argmax())
     best = in_full(fits[top])
     findings = convention_findings.told(
-        named, logs, POSSIBLE, kind, lambda name, probability, nats:
+        named, logs, POSSIBLE, lambda _: kind, lambda name, probability, nats:
         convention_findings.described(name, kind, best, probability, nats, live))
     if named[top] and not findings:
         best = in_full(max((f for f, each in zip(fits, named) if not each), key=lambda f: f.log))

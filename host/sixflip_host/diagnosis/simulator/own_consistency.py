@@ -4,7 +4,7 @@ At rest a sensor reads gravity, in the direction that a label (or the real robot
 and the gyro carries gravity from each rest to the next. Every hypothesis on both sensors together
 predicts these directions; a move that follows nothing at all is always possible.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,13 +33,15 @@ OF_GYRO = {"gyro_axes", "both_axes"}  # names that say what its axes are
 class Reading:
     """A hypothesis on both sensors: accel and gyro, signed permutations (3, 3), the gyro's unit
     or how many times too large a wrong time step makes its rates, constant (gravity always along
-    one axis of the sensor), world (rates along the world's axes), nameless (gravity follows
+    one axis of the sensor), whole (where accel turns gravity over, whether all of the force is
+    turned or gravity alone), world (rates along the world's axes), nameless (gravity follows
     nothing that the gyro says)."""
 
     accel: np.ndarray
     gyro: np.ndarray
     gyro_unit: float = 1.0
     constant: bool = False
+    whole: bool = False
     world: bool = False
     nameless: bool = False
 
@@ -109,6 +111,9 @@ def conventions_of(real, sim, moving=True, real_turns=1.0):
         tried.append((Reading(eye, eye, constant=True), directions.constant_log(ups, ways, sim)))
     tried.append((Reading(eye, eye, nameless=True), directions.direction_log(
         ups, real, sim) + directions.nameless_log(ups, ways)))
+    # What else moves it is another thing in another motion, and does not say its own sign.
+    tried += [(replace(reading, whole=True), log) for reading, log in tried
+              if np.array_equal(reading.accel, -eye)]
     more = judged(tried)
     if len(sim.rests) < 2 or not ways:
         unseen.append("axes and frame of the gyro of %s: no move between two rests" % sim.name)
@@ -184,7 +189,7 @@ def names_of(reading):
         names.append("both_axes")
     else:
         if np.array_equal(reading.accel, -eye):
-            names.append("gravity_sign")
+            names.append("force_sign" if reading.whole else "gravity_sign")
         elif not np.array_equal(reading.accel, eye):
             names.append("accel_axes")
         if not np.array_equal(reading.gyro, eye):
@@ -210,8 +215,17 @@ def judged(tried):
     logs = np.array([log + log_prior(names) for (_, log), names in zip(tried, named)])
     best = tried[int(logs.argmax())][0]
     return convention_findings.told(
-        named, logs, POSSIBLE, "device",
+        named, logs, POSSIBLE,
+        lambda candidates: sensors.pop() if len(sensors := set(
+            map(sensor_of, candidates))) == 1 else "device",
         lambda name, probability, nats: convention_as(name, best, probability, nats))
+
+
+def sensor_of(name):
+    """Which sensor does what a name says, or device."""
+    if name in ("world_frame_rates", "gyro_axes", "gyro_unit", "time_step"):
+        return "gyro"
+    return "device" if name in ("both_axes", "unknown") else "accel"
 
 
 def convention_as(name, reading, probability, nats):
@@ -223,8 +237,7 @@ def convention_as(name, reading, probability, nats):
             name, "gyro", probability, nats, "its rates turn gravity %.3g times as far as it "
             "moves: divide them by that, or the steps of its time stamps" % reading.gyro_unit,
             value={"factor": float(reading.gyro_unit)}, unit="1")
-    sensor = "gyro" if name in ("world_frame_rates", "gyro_axes") else \
-        "device" if name == "both_axes" else "accel"
+    sensor = sensor_of(name)
     if not name.endswith("_axes"):
         return convention_findings.finding(name, sensor, probability, nats)
     return convention_findings.other_axes(
