@@ -8,7 +8,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from scipy import ndimage
+from scipy import fft, ndimage
 
 from ...capture.registers import unit_of_count
 from ...experiment.block_measures import EDGE_S
@@ -107,7 +107,7 @@ def without(session, sensor, axis, hz, fastest_hz):
 def _spectrum(t, x, slowest, fastest):
     """(frequencies (k,), power (k,)) of x (n,) at times t (n,), by a transform on a fine grid."""
     place = np.rint((t - t[0]) * GRID_HZ).astype(int)
-    number = OVER * int((t[-1] - t[0]) * GRID_HZ + 1.0)
+    number = fft.next_fast_len(OVER * int((t[-1] - t[0]) * GRID_HZ + 1.0), real=True)
     whole = np.abs(np.fft.rfft(np.bincount(place, x), number)) ** 2
     first, end = (int(f * number / GRID_HZ) for f in (slowest, fastest))
     return np.arange(first, end) * GRID_HZ / number, whole[first:end]

@@ -207,8 +207,11 @@ def _judged(x, width, far, way, length, worth=SEEN):
     first = np.arange(2, len(x) - 2 * length - 2)
     starts = first[np.logical_and.reduce([far[first[0] + place:first[-1] + place + 1]
                                           for place in places])]
-    gain = _gain(x, width, way, length, starts)
-    starts, gain = starts[gain > worth], gain[gain > worth]
+    if starts.size:
+        gain = _gain(x, width, way, length, starts)
+        starts, gain = starts[gain > worth], gain[gain > worth]
+    if not starts.size:
+        return 0.0, starts
     gain[_handed_twice(x, way, length, starts)] = 0.0
     kept, size = [], places[-1] + 1
     taken = np.zeros(len(x), dtype=bool)
