@@ -88,3 +88,24 @@ def test_what_one_log_alone_is_shaken_by_is_told_beside_a_short_rest(mg, differs
     for one, other in ((0, 1), (1, 0)):
         numbers = shaking.shaking(logs[one], logs[other], SAME_CLOCK)
         assert [p.axis for p in numbers if p.differs] == differs
+
+
+@pytest.mark.parametrize("own, both, differs", [
+    (15.0, 0.0, ["z"]), (0.0, 300.0, []), (0.0, 0.0, [])])
+def test_a_line_too_slow_for_a_motor_is_told_and_a_gait_of_both_is_none(own, both, differs):
+    """Between 6 and 12 Hz a line outside of rests was no gap; there a gait is foretold by the
+    other log, up to how it is scaled."""
+    logs = []
+    for seed, mg, scale in ((1, own, 1.0), (2, 0.0, 0.97)):
+        log = moving(0.0, seed)
+        wave = np.sin(2.0 * np.pi * 9.0 * log.t)
+        log.force[:, 2] += ((log.t % 10.0) > 4.0) * np.sqrt(2.0) * (
+            mg + scale * both) * wave / parameters.MG
+        logs.append(log)
+    for one, other in ((0, 1), (1, 0)):
+        numbers = shaking.shaking(logs[one], logs[other], SAME_CLOCK)
+        assert [p.axis for p in numbers if p.differs] == differs
+        if differs:
+            z, = [p for p in numbers if p.differs]
+            assert abs(z.difference) == pytest.approx(own, rel=0.25)
+            assert "at 8 Hz" in z.how or "at 10 Hz" in z.how

@@ -1,9 +1,10 @@
 """Layer two, how hard each of two logs of one motion shakes while it moves, faster than a body is
 steered and slower than either log's rows show: what motors, propellers and the ground do. Nobody
 simulates their phases, so it is the power that is compared, piece by piece: that of the whole
-band; and that of a line, such as a motor's that is in one log alone under a floor's rumbling that
-both have. Of a line what follows from the other log at its frequency is none of its own [Bendat
-and Piersol, Random Data (2010), section 6.1: coherent output power].
+band; and that of a line, which may be slower since nobody steers to a frequency, such as a motor's
+that is in one log alone under a floor's rumbling that both have. Of a line what follows from the
+other log at its frequency is none of its own [Bendat and Piersol, Random Data (2010), section 6.1:
+coherent output power].
 """
 from dataclasses import dataclass, replace
 
@@ -23,12 +24,15 @@ GAP = 1.5  # rows: a step at a place where some are missing shakes nothing
 FEWEST_S = 8  # of moving
 FEWEST_RESTS = 2  # pieces of rest: of one alone nothing tells whether it is like others
 PIECE_S = 0.5  # short enough for a move of a hand, and long enough to know a line to 2 Hz by
+FEET_HZ = BAND_HZ - 2.0 / PIECE_S  # where the slowest line has its foot; all bins begin there
+FAST = slice(round((FASTER_HZ - FEET_HZ) * PIECE_S), None)  # bins from FASTER_HZ on
+SLOWEST = round((BAND_HZ - FEET_HZ) * PIECE_S)  # bin of a line: below are gaits and pendulums
 LOBE = 1  # bins beside a line that Hann's window lays half of its height into
 
 
 @dataclass(frozen=True)
 class Spectra:
-    """What a log has in the bins from FASTER_HZ on: of its moving pieces what Fourier makes of
+    """What a log has in the bins from FEET_HZ on: of its moving pieces what Fourier makes of
     them (m, f, 3), scaled to power, with the number of each (m,); power at rest (f, 3),
     a mean over so many pieces."""
 
@@ -87,8 +91,8 @@ def shaking(real, sim, aligned):
 
 def _of_band(spectra, i):
     """Levels of one axis in the whole band, each log by its own pieces."""
-    each = [(np.abs(s.moving[:, :, i]) ** 2).sum(axis=1) for s in spectra]
-    return _levels(each, [s.at_rest(slice(None), i) for s in spectra])
+    each = [(np.abs(s.moving[:, FAST, i]) ** 2).sum(axis=1) for s in spectra]
+    return _levels(each, [s.at_rest(FAST, i) for s in spectra])
 
 
 def _levels(each, still):
@@ -109,7 +113,7 @@ def _line(real, sim, i):
         return nothing
     _, *rows = np.intersect1d(real.pieces, sim.pieces, return_indices=True)
     bins = len(real.still)
-    if len(rows[0]) * PIECE_S < FEWEST_S or bins <= 2 * LOBE:
+    if len(rows[0]) * PIECE_S < FEWEST_S or bins <= 2 * LOBE + SLOWEST:
         return nothing
     x, y = (s.moving[k][:, :, i] for s, k in zip((real, sim), rows))
     cross = (x * y.conj()).mean(axis=0)
@@ -124,8 +128,8 @@ def _line(real, sim, i):
     of_lines = [_levels([e[:, line].sum(axis=1) for e in each],
                         [s.at_rest(line, i) for s in (real, sim)]) for line in lines]
     powers = np.array([levels.power + levels.floor for levels in of_lines])
-    stronger = int(powers[:, 1].max() > powers[:, 0].max())
-    at = int(np.argmax(powers[:, stronger]))
+    stronger = int(np.diff(powers[SLOWEST:].max(axis=0))[0] > 0.0)
+    at = SLOWEST + int(np.argmax(powers[SLOWEST:, stronger]))
     # What falls off from one end of the band to the other is the foot of how it is steered.
     feet = [side.min(initial=np.inf) for side in np.split(powers[:, stronger], [at])]
     beside = max(*feet, np.median(powers[:, stronger]), powers[:, 1 - stronger].max())
@@ -133,7 +137,7 @@ def _line(real, sim, i):
     rare = -special.ndtri(special.ndtr(-DIFFERS) / len(of_lines))
     if powers[at, stronger] <= SHAKES ** 2 * beside or not of_lines[at].differ(rare):
         return nothing
-    return of_lines[at], "at %.0f Hz" % (FASTER_HZ + (at + LOBE) / PIECE_S)
+    return of_lines[at], "at %.0f Hz" % (FEET_HZ + (at + LOBE) / PIECE_S)
 
 
 def _parameter(kind, axis, levels, where):
@@ -185,7 +189,7 @@ def _spectra(trace, values, cut, top):
     window = np.hanning(rows + 1)[:rows]
     made = np.fft.rfft(x * window[:, None], axis=1) * np.sqrt(2.0 / (rows * (window ** 2).sum()))
     hz = np.fft.rfftfreq(rows, 1.0 / trace.rate_hz)
-    wanted = np.arange(FASTER_HZ, top, 1.0 / PIECE_S)
+    wanted = np.arange(FEET_HZ, top, 1.0 / PIECE_S)
     made = made[:, np.argmin(np.abs(hz[:, None] - wanted), axis=0)]
     return Spectra(made[moves], np.flatnonzero(moves),
                    (np.abs(made[rests]) ** 2).mean(axis=0), int(rests.sum()))
