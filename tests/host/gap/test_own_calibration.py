@@ -162,7 +162,8 @@ def test_a_gyro_carries_gravity_as_well_as_its_matrix_is_known(way):
     for _ in range(200):
         matrix = np.eye(3) + gravity_directions.GYRO * generator.standard_normal((3, 3))
         off.append(np.linalg.norm(carried(rotations(steps @ matrix.T))[-1].T @ up - there))
-    told = gravity_directions.carries(steps, carried(rotations(steps)), up)
+    told = gravity_directions.carries(gravity_directions.spread(
+        steps, carried(rotations(steps)))[None], up[None])[0]
     gyro = np.sqrt(max(told ** 2 - gravity_directions.SIGMA ** 2, 0.0))
     assert gyro == pytest.approx(np.sqrt(np.mean(np.square(off)) / 2.0), rel=0.2, abs=0.002)
 

@@ -33,6 +33,9 @@ DELAY_ROUNDS = 4  # of two rows, to a hundredth of one
 # Share of the noise expected in the difference of two logs below which they share some of it: logs
 # of their own have all of it, a log that was made of the other's samples next to none.
 SHARED = 0.5
+# Rows by which hypotheses are weighed before it is known which samples are independent, of about
+# a minute or two; and nats of such by which none is made up for by what any number of rests says.
+ROUGHLY, FAR = 1000, 100.0
 POSSIBLE = 0.02  # probability of a fit from which on its names are some that it may be
 # Of a log that is as smooth as the other, s2: a time constant of 0.04 ms; and standard errors from
 # which on it is smoother, by chance in 1 of 16,000 (normal).
@@ -124,19 +127,24 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, own_real, *ot
     own = effects = hypotheses.own_effects(
         kind, pair.t, pair.celsius, pair.force, pair.motion.rate, real.g)
 
-    def judged(inflation, rows=None):
+    def judged(tried, inflation, rows=None, **most):
         return [f for h in tried for f in evidence_of_logs.fits(
-            h, measured, kind, pairing.GRID_HZ, inflation, own, live, rows, noise_bends, swapped)]
+            h, measured, kind, pairing.GRID_HZ, inflation, own, live, rows, noise_bends, swapped,
+            **most)]
 
     def whole(fit, inflation, rows=None, sizes=None, left=True):
         return evidence_of_logs.fit_one(
             fit.hypothesis, measured, fit.axes, fit.unit, pairing.GRID_HZ, kind, inflation,
             own if sizes is None else (own[0], sizes), live, rows, left, noise_bends)
 
-    every = sorted(judged(1.0), key=lambda f: -f.log)
+    every = sorted(judged(tried, 1.0, most=ROUGHLY), key=lambda f: -f.log)
     first = whole(every[0], 1.0)
-    rows = local_noise(first.left[:, live])
+    rows = pairing.local_noise(first.left[:, live])
     inflation = align_by.independent(first.left[:, live] / rows[:, None])
+    # The best with a name is as good as any other that the rests may yet speak for.
+    least = next(f.log for f in every if f.name) - FAR * inflation
+    hopeful = [h for h in tried if h.name in ("", "healthy") or any(
+        f.log > least for f in every if f.hypothesis is h)]
 
     def in_full(fit):
         return whole(fit, inflation, rows)
@@ -155,7 +163,7 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, own_real, *ot
     for likely in every[:1] if first.name else [first, next(f for f in every if f.name)]:
         own = sized(effects, lambda s, f=likely: whole(f, inflation, rows, s, left=False).log)
         fits = [gravity_directions.beside(kind, fit, real, sim, own_real.turns)
-                for fit in judged(inflation, rows)]
+                for fit in judged(hopeful, inflation, rows)]
         best = best_of(fits)
         if doubt := best.fit.name and numbers_told.doubted(best, known):
             return kept((convention_findings.one_of(kind, (), *doubt),),
@@ -204,17 +212,6 @@ def sized(own, log):
     """own (columns, sizes) with the sizes that make the logs likeliest: most real sensors do far
     less of themselves than datasheets allow, and room that is not needed is room for noise."""
     return own[0], max((own[1] * share for share in OWN_SHARES), key=log)
-
-
-def local_noise(left):
-    """(n,): how noisy the log is around each sample, in units of the average: a robot on its way
-    shakes, at rest it does not; never less than the quieter half."""
-    wide = int(pairing.GRID_HZ)
-    power = (left ** 2 / np.maximum(left.var(axis=0), 1e-18)).mean(axis=1)
-    level = np.sqrt(np.convolve(power, np.ones(wide), "same") / np.convolve(
-        np.ones(len(power)), np.ones(wide), "same"))
-    level = np.maximum(level, 0.5 * np.median(level) + 1e-9)
-    return level / np.sqrt((level ** 2).mean())
 
 
 def posterior(kind, fits, live, in_full, swapped=None, said=()):

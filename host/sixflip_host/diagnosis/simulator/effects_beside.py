@@ -14,7 +14,7 @@ from ...experiment import noise_arrays, session_terms, terms
 from .. import closed_loop, effect_estimates, members
 from ..detect.detection import Finding
 from ..hypotheses import Form
-from . import conventions, hypotheses, numbers_told, pairing, parameters, remaining_gap
+from . import hypotheses, numbers_told, pairing, parameters, remaining_gap
 from .parameters import MG
 from .sensor_axes import DEG
 
@@ -183,7 +183,7 @@ def fit_with(sensor_fit, designs):
     """Fit of the sensor's own hypothesis with the designs' columns beside it; what the real
     sensor may do besides is left out, since it would take their place."""
     return replace(wide(sensor_fit, designs), own=None).refitted(
-        conventions.local_noise(sensor_fit.fit.left[:, sensor_fit.live]))
+        pairing.local_noise(sensor_fit.fit.left[:, sensor_fit.live]))
 
 
 def wide(sensor_fit, designs):

@@ -65,19 +65,19 @@ def names(fit, kind, live):
 
 
 def fits(hypothesis, measured, kind, grid_hz, inflation=1.0, own=None, live=None,
-         rows=None, noise_bends=(0.0, 0.0), swapped=None):
+         rows=None, noise_bends=(0.0, 0.0), swapped=None, most=MOST_ROWS):
     """Fits of a Hypothesis, one for each S that may be: none, the nearest signed permutation and
     unit, and swapped (3, 3), that of the other sensor or None, without what they leave; measured
     (n, 3); own (columns (n, q), sizes (q,)): what the real sensor adds of itself to each channel;
     live (3,): channels that are not constant; rows (n,): the noise of each sample, in units of the
     average; noise_bends: bends() of the noise, none where no smoother fit is weighed for what it
-    takes away."""
+    takes away; most: rows that a fit looks at."""
     live = np.ones(3, bool) if live is None else live
     every_fit = []
     for axes, unit in sensor_axes.candidates(hypothesis, measured, kind, live, swapped):
         def fitted(axes, unit=unit):
             return fit_one(hypothesis, measured, axes, unit, grid_hz, kind, inflation, own, live,
-                           rows, left=False, noise_bends=noise_bends)
+                           rows, left=False, noise_bends=noise_bends, most=most)
         fit = fitted(axes)
         if sensor_axes.is_mounted(axes) and not hypothesis.heading:
             fit = fitted(sensor_axes.nearest_turn((np.eye(3) + fit.shape) @ axes))
@@ -86,7 +86,7 @@ def fits(hypothesis, measured, kind, grid_hz, inflation=1.0, own=None, live=None
 
 
 def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, rows, left=True,
-            noise_bends=(0.0, 0.0)):
+            noise_bends=(0.0, 0.0), most=MOST_ROWS):
     """The Fit of a Hypothesis with one S; left: with what it does not predict of every sample, and
     with errors that take account of that; one of many fits is compared by its evidence alone."""
     n = len(measured)
@@ -94,7 +94,7 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
     target = measured / unit
     turned = np.einsum("ij,njk->nik", axes, h.columns)
     for last in (False, False, True):
-        every = 1 if last and left else max(1, n // MOST_ROWS)  # a few rows will do for the rest
+        every = 1 if last and left else max(1, n // most)  # a few rows will do for the rest
         some = slice(None, None, every)
         signal = shifted(h.signal, delay * grid_hz) @ axes.T
         slope = -np.gradient(signal, axis=0) * grid_hz
@@ -197,9 +197,11 @@ def shifted(x, rows, every=1):
     first = np.clip(at.astype(int) - (number // 2 - 1), 0, n - number)
     # All but those near the ends lie alike between their points: a few weights are those of all.
     alike, which = np.unique(np.round(at - first, 9), return_inverse=True)
-    points = range(number)
-    moved = sum(np.prod([(alike - m) / (k - m) for m in points if m != k], axis=0)[which].reshape(
-        (-1,) + (1,) * (x.ndim - 1)) * x[first + k] for k in points)
+    points, moved = range(number), 0.0
+    for k in points:
+        weight = np.prod([(alike - m) / (k - m) if m != k else np.ones(len(alike))
+                          for m in points], axis=0)
+        moved = moved + weight[which].reshape((-1,) + (1,) * (x.ndim - 1)) * x[first + k]
     for end, slope in ((beyond < 0.0, x[:2]), (beyond > 0.0, x[-2:])):
         if len(slope) == 2 and end.any():
             moved[end] += np.multiply.outer(beyond[end], slope[1] - slope[0])

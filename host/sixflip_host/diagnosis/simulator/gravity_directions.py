@@ -1,6 +1,7 @@
 """How likely one log's directions of gravity are: at its rests, as labels or the real robot's own
 rests have them, and from each rest to the next, as the gyro carries them."""
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import reduce
 
 import numpy as np
 
@@ -56,26 +57,53 @@ def closeness(a, b, sigma=SIGMA, before=None):
     return np.log((1 - ASTRAY) * near(b, sigma) + ASTRAY * anywhere)
 
 
+@dataclass(frozen=True)
+class Carried:
+    """How a gyro's readings carry directions over m moves: the rests before and after (m,), turn
+    (m, 3, 3) of each move, and its spread (m, 3, 3), see carries()."""
+
+    before: np.ndarray
+    after: np.ndarray
+    turn: np.ndarray
+    spread: np.ndarray
+
+    def log(self, body):
+        """Sum over the moves of how likely gravity after each is; body (rests, 3): directions."""
+        up = body[self.before]
+        predicted = np.einsum("mji,mj->mi", self.turn, up)
+        return float(np.sum(closeness(body[self.after], predicted, carries(self.spread, up), up)))
+
+
+def carried_by(ways, gyro):
+    """Carried of ways as moves() has them, by a gyro that reads gyro (3, 3) · true rate."""
+    matrix, turns, spreads = np.linalg.inv(gyro), [], []
+    for _, _, steps in ways:
+        steps = steps @ matrix.T
+        chain = carried(rotations(steps))
+        turns.append(chain[-1])
+        spreads.append(spread(steps, chain))
+    before, after = np.array([way[:2] for way in ways], int).reshape(-1, 2).T
+    return Carried(before, after, np.reshape(turns, (-1, 3, 3)), np.reshape(spreads, (-1, 3, 3)))
+
+
 def carried_log(body, ways, gyro):
     """Sum over moves: gravity after, carried by the gyro's readings (read = gyro · true rate)."""
-    total = 0.0
-    matrix = np.linalg.inv(gyro)
-    for before, after, steps in ways:
-        steps = steps @ matrix.T
-        turns = carried(rotations(steps))
-        total += closeness(body[after], turns[-1].T @ body[before],
-                           carries(steps, turns, body[before]), before=body[before])
-    return float(total)
+    return carried_by(ways, gyro).log(body)
 
 
-def carries(steps, turns, up):
-    """rad: how well steps (k, 3) rad, whose turns (k + 1, 3, 3) they make, carry a direction up
-    (3,). Each entry of the gyro's matrix, GYRO off, turns it by the sum of the steps that it is
-    off by, as they lie where the way begins: of a way there and back that is next to nothing, of a
-    flight of many turns so much that where it ends says nothing of the gyro."""
+def spread(steps, turns):
+    """(3, 3) rad2: covariance of the end of steps (k, 3) rad, whose turns (k + 1, 3, 3) they make.
+    Each entry of the gyro's matrix, GYRO off, turns it by the sum of the steps that it is off by,
+    as they lie where the way begins: of a way there and back that is next to nothing, of a flight
+    of many turns so much that where it ends says nothing of the gyro."""
     off = np.einsum("kai,kj->aij", turns[:-1], steps)
-    spread = GYRO ** 2 * np.einsum("aij,bij->ab", off, off)
-    return float(np.sqrt(SIGMA ** 2 + max(np.trace(spread) - up @ spread @ up, 0.0) / 2.0))
+    return GYRO ** 2 * np.einsum("aij,bij->ab", off, off)
+
+
+def carries(spreads, up):
+    """rad (m,): how well moves of such spreads (m, 3, 3) carry directions up (m, 3)."""
+    along = np.einsum("mi,mij,mj->m", up, spreads, up)
+    return np.sqrt(SIGMA ** 2 + np.maximum(np.trace(spreads, axis1=1, axis2=2) - along, 0.0) / 2.0)
 
 
 def full_scale(trace, ups):
@@ -120,16 +148,14 @@ def world_log(body, ways):
     if not ways:
         return -1e9
     z = np.array([0.0, 0.0, 1.0])
+    wholes = [(before, after, reduce(lambda whole, turn: turn @ whole, rotations(steps)))
+              for before, after, steps in ways]
     best = []
     for psi in np.linspace(0.0, 2.0 * np.pi, HEADINGS, endpoint=False):
         c, s = np.cos(psi), np.sin(psi)
         attitude = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]) @ rotation_between(body[0], z)
         total = 0.0
-        for before, after, steps in ways:
-            turns = rotations(steps)
-            whole = np.eye(3)
-            for turn in turns:
-                whole = turn @ whole
+        for before, after, whole in wholes:
             attitude = whole @ attitude
             total += closeness(body[after], attitude[2], before=body[before])
             attitude = rotation_between(attitude @ body[after], z) @ attitude

@@ -19,7 +19,7 @@ from ..detect.detection import Finding
 from ..effect_estimates import believable
 from ..hypotheses import Form
 from . import alignment as align_by
-from . import conventions, effects_beside, hypotheses, remaining_gap
+from . import conventions, effects_beside, hypotheses, pairing, remaining_gap
 from .parameters import DIFFERS, MG
 from .sensor_axes import DEG
 
@@ -150,7 +150,7 @@ def judged(kind, sensor_fit, held, names, diagnosis):
     weighed = replace(sensor_fit, inflation=1.0)
     best = max(_rivals(kind, weighed, held, names, diagnosis, None), key=lambda r: r.fit.log)
     left = _fitted(weighed, best.designs, best.nuisance, None).left[:, weighed.live]
-    rows = conventions.local_noise(left)
+    rows = pairing.local_noise(left)
     weighed = replace(weighed, inflation=align_by.independent(left / rows[:, None]))
     return _rivals(kind, weighed, held, names, diagnosis, rows), weighed, rows
 

@@ -91,13 +91,16 @@ def conventions_of(real, sim, moving=True, real_turns=1.0):
     planar = max(*directions.turned(ups, ways), says) < np.radians(LEVEL_DEG)
     # Where gravity stays where it is, and the gyro says so, its unit makes no difference.
     rate_units = [(0.0, 1.0)] if planar else units_of(real, sim)
+    # Turned in its axes a way goes the same way, and seen in a mirror it is turned backwards.
+    by = {(times, way): directions.carried_by(ways, way * times * eye)
+          for _, times in rate_units for way in (1, -1)}
     for accel, seen in accels:
         body = ups @ accel
         for unit_log, rate_unit in rate_units:
             for gyro in SIGNED:
+                way = round(np.linalg.det(gyro))
                 tried.append((Reading(accel, gyro, gyro_unit=rate_unit),
-                              seen + unit_log + directions.carried_log(
-                                  body, ways, gyro * rate_unit)))
+                              seen + unit_log + by[rate_unit, way].log(body @ (way * gyro.T))))
         if np.array_equal(accel, eye) and not planar:
             tried.append((Reading(accel, eye, world=True),
                           seen + directions.world_log(body, ways)))

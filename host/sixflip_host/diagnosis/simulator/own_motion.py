@@ -14,7 +14,6 @@ from ...experiment.projection import regression
 from . import alignment as align_by
 from . import (
     convention_findings,
-    conventions,
     hypotheses,
     own_calibration,
     own_consistency,
@@ -22,7 +21,7 @@ from . import (
     row_times,
     traces,
 )
-from .pairing import GRID_HZ
+from .pairing import GRID_HZ, local_noise
 
 ARM_M = 0.3  # prior of a lever arm in a log: of the sensor, and of the point it is turned about
 BAND_HZ = align_by.BAND_HZ
@@ -81,7 +80,7 @@ def fitted(trace, sensor):
         result = regression(force - signal, own, sds, columns, np.zeros(7), prior, inflation,
                             live, rows, covariance=True)
         left = result[4]
-        rows = conventions.local_noise(left)
+        rows = local_noise(left)
         inflation = align_by.independent(left / rows[:, None])
     shared = result[2]
     groups = moves_of(trace, t)

@@ -201,3 +201,14 @@ def reliable(values, sigma):
     power, directions = np.linalg.eigh(white.T @ white / len(white))
     share = np.clip(1.0 - 1.0 / np.maximum(power, 1e-30), 0.0, 1.0)
     return mean + (white @ (directions * share)) @ directions.T * sigma
+
+
+def local_noise(left):
+    """(n,): how noisy the log is around each sample, in units of the average: a robot on its way
+    shakes, at rest it does not; never less than the quieter half."""
+    wide = int(GRID_HZ)
+    power = (left ** 2 / np.maximum(left.var(axis=0), 1e-18)).mean(axis=1)
+    level = np.sqrt(np.convolve(power, np.ones(wide), "same") / np.convolve(
+        np.ones(len(power)), np.ones(wide), "same"))
+    level = np.maximum(level, 0.5 * np.median(level) + 1e-9)
+    return level / np.sqrt((level ** 2).mean())
