@@ -238,6 +238,7 @@ def test_a_time_step_is_that_of_both_sensors(said, named):
     fits = [SimpleNamespace(name=name, log=log, axes=np.eye(3), unit=1.0, extra=np.array([-0.5]),
                             extra_sigma=np.array([0.01]), shape=np.zeros((3, 3)))
             for name, log in (("healthy", 5329.4), ("time_step", 5336.4))]
-    found, best = conventions.posterior("gyro", fits, np.ones(3, bool), None, said)
+    found, best = conventions.posterior(
+        "gyro", fits, np.ones(3, bool), lambda fit: fit, None, said)
     assert {c.name for c in found} == named
     assert best.name == ("time_step" if named else "healthy")
