@@ -14,6 +14,7 @@ W (3 x 7, row by row) of the gyro (gyro_moves.py); one excess angle d a flip, wh
 
 import numpy as np
 
+from ..capture import attitude
 from . import gyro_moves
 
 N_ACCEL = 12
@@ -66,7 +67,7 @@ class Equations:
         for k, flip in enumerate(self.session.flips):
             column = N_ACCEL + N_GYRO + k
             plane = np.delete(np.eye(3), np.argmax(np.abs(flip.axis)), axis=0)
-            cross = gyro_moves.cross_matrix(flip.axis)
+            cross = attitude.cross_matrix(flip.axis)
             c, s = np.cos(np.pi + p[column]), np.sin(np.pi + p[column])
             back = c * np.eye(3) - s * cross  # R(-psi) on vectors across the axis
             error = np.sqrt(2.0) * np.hypot(self.session.force_error[flip.a], SCATTER)
@@ -104,11 +105,11 @@ class Equations:
         across = (np.eye(3) - v[:, :, None] * v[:, None, :]) / length[:, None, None]
         dv = across @ self.of_accel
         before, after = np.array(s.ends).T
-        back = np.swapaxes(gyro_moves.matrix(turns), 1, 2)
+        back = np.swapaxes(attitude.matrix(turns), 1, 2)
         carried = np.einsum("mij,mj->mi", back, v[before])
         J = np.zeros((len(turns), 3, self.size))
         J[:, :, :N_ACCEL] = back @ dv[before] - dv[after]
-        turned = np.einsum("mij,mjcx->micx", gyro_moves.cross_matrix(carried), change)
+        turned = np.einsum("mij,mjcx->micx", attitude.cross_matrix(carried), change)
         J[:, :, N_ACCEL : N_ACCEL + N_GYRO] = turned.reshape(-1, 3, N_GYRO)
         error = s.move_error[:, None]
         residual = (carried - v[after]) / error

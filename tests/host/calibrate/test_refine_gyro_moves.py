@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from sixflip_host.calibrate import gyro_moves
+from sixflip_host.capture import attitude
 
 PERFECT = np.hstack([np.eye(3), np.zeros((3, 4))])
 
@@ -31,7 +32,7 @@ def sampled(interval):
 def test_fourth_order_on_a_smooth_move():
     exact = truth()
     coarse, fine = [
-        np.abs(gyro_moves.matrix(sampled(h).rotate(PERFECT)[0][0]) - exact).max()
+        np.abs(attitude.matrix(sampled(h).rotate(PERFECT)[0][0]) - exact).max()
         for h in (0.04, 0.02)
     ]
     assert fine < 1e-6
@@ -48,7 +49,7 @@ def test_derivatives_are_those_of_the_rotation(column):
     shift = np.zeros(21)
     shift[column] = 1e-6
     after, _ = moves.rotate(PERFECT + shift.reshape(3, 7))
-    turned = np.swapaxes(gyro_moves.matrix(before), 1, 2) @ gyro_moves.matrix(after)
+    turned = np.swapaxes(attitude.matrix(before), 1, 2) @ attitude.matrix(after)
     got = Rotation.from_matrix(turned).as_rotvec() / 1e-6
     assert np.abs(got - change.reshape(3, 3, 21)[:, :, column]).max() < 2e-3
 
@@ -64,6 +65,6 @@ def test_moves_of_different_length_do_not_disturb_each_other():
 @pytest.mark.parametrize("degrees", [-175.0, -90.0, 3.0, 170.0, 185.0])
 def test_turn_about_an_axis(degrees):
     axis = np.array([0.0, 0.0, -1.0])
-    q = gyro_moves.exponential(np.radians(degrees) * axis)
+    q = attitude.exponential(np.radians(degrees) * axis)
     turn = np.degrees(gyro_moves.turn_about(q, axis))
     assert abs((turn - degrees + 180) % 360 - 180) < 1e-9

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..attitude import cross_matrix
 from ..capture_header import STANDARD_G
 
 # Counts per g of the chips in use: ±2, 4, 8, 16 g of 16 bits (MPU-6000 register map 4.17), 1024
@@ -183,30 +184,34 @@ def turn_about_a_point(accel, gyro, dps, rate_hz):
     if good.sum() < 10:
         return None
 
+    # All is a polynomial in the factor, and so are the sums of squares of what is left.
+    middle, lag_s = slice(LAG // 2, LAG // 2 + k - LAG), LAG * m / rate_hz
+    rate = np.stack([w[j:j + k - LAG] for j in range(1, LAG + 1)]).mean(axis=0)[good]
+    around, spin = cross_matrix(rate), cross_matrix(w) @ cross_matrix(w)
+    twist = cross_matrix(np.gradient(w, m / rate_hz, axis=0))
+    spun, twisted = ((x[LAG:] - x[:-LAG])[good] for x in (spin, twist))
+    by_arm = [twisted, spun + lag_s * around @ twist[middle][good],
+              lag_s * around @ spin[middle][good]]
+    change = [(a[LAG:] - a[:-LAG])[good, :, None], lag_s * around @ a[middle][good, :, None]]
+    every = np.concatenate(by_arm + change, axis=2).reshape(-1, 11)
+    products = every.T @ every
+
     def left(factor):
-        """(what is left of the changes of the force, the part of the force that r makes)."""
-        forces, turned, middle = _of_an_arm(factor * w, m / rate_hz), factor * w, slice(
-            LAG // 2, LAG // 2 + k - LAG)
-        rate = np.stack([turned[j:j + k - LAG] for j in range(1, LAG + 1)]).mean(axis=0)[good]
-        change = (a[LAG:] - a[:-LAG])[good] + LAG * m / rate_hz * np.cross(rate, a[middle][good])
-        by_arm = (forces[LAG:] - forces[:-LAG])[good] + LAG * m / rate_hz * np.cross(
-            rate[:, :, None], forces[middle][good], axis=1)
-        flat = by_arm.reshape(-1, 3)
-        arm = np.linalg.lstsq(flat.T @ flat, flat.T @ change.ravel(), rcond=None)[0]
-        return float(((change.ravel() - flat @ arm) ** 2).sum()), forces @ arm
+        """(what is left of the changes of the force, the arm)."""
+        powers = np.zeros((11, 4))
+        powers[:9, :3] = np.concatenate([factor ** n * np.eye(3) for n in (1, 2, 3)])
+        powers[9:, 3] = 1.0, factor
+        gram = powers.T @ products @ powers
+        arm = np.linalg.lstsq(gram[:3, :3], gram[:3, 3], rcond=None)[0]
+        off = np.append(-arm, 1.0)
+        return float(off @ gram @ off), arm
 
     best = min(FACTORS, key=lambda factor: left(factor)[0])
     near = best * np.geomspace(FACTORS[0] / FACTORS[1], FACTORS[1] / FACTORS[0], FINER)
     best = min(near, key=lambda factor: left(factor)[0])
-    turn = turn_factor(a - left(best)[1], w, math.degrees(best), rate_hz / m)
+    by_the_arm = (best ** 2 * spin + best * twist) @ left(best)[1]
+    turn = turn_factor(a - by_the_arm, w, math.degrees(best), rate_hz / m)
     return turn and Turn(best * turn.factor, turn.alike, turn.number)
-
-
-def _of_an_arm(w, dt):
-    """(n, 3, 3) that take an arm to what a body's turning at w (n, 3) rad/s makes felt at it."""
-    def cross(v):
-        return np.cross(v[:, None, :], np.eye(3)).transpose(0, 2, 1)
-    return cross(w) @ cross(w) + cross(np.gradient(w, dt, axis=0))
 
 
 def turn_factor(accel, gyro, dps, rate_hz):

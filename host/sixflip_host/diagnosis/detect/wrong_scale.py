@@ -11,6 +11,7 @@ import numpy as np
 
 from sixflip.poses import faces
 
+from ...capture import attitude
 from ...capture.find_poses import NO_GRAVITY
 from ...capture.imports import gravity, gyro_unit
 from . import saturation
@@ -200,22 +201,13 @@ def _of_all(moves):
 def _left(before, after, turns, factors):
     """(k,) rad between gravity before a move and where turns (n, 3) rad times factors (k,) take it
     back to from after it."""
-    turns = turns[:, None, :] * factors[None, :, None]
-    angle = np.linalg.norm(turns, axis=2, keepdims=True)
-    way = np.concatenate([np.cos(angle / 2), 0.5 * turns * np.sinc(angle / 2 / np.pi)], axis=2)
+    way = attitude.exponential(turns[:, None] * factors[:, None])
     while len(way) > 1:  # two by two
         if len(way) % 2:
             way = np.concatenate([way, np.tile([1.0, 0.0, 0.0, 0.0], (1, len(factors), 1))])
-        way = _product(way[::2], way[1::2])
-    there = _product(_product(way[0], np.append(0.0, after)[None]), way[0] * [1, -1, -1, -1])
-    return np.arccos(np.clip(there[:, 1:] @ before, -1.0, 1.0))
-
-
-def _product(p, q):
-    """The product of quaternions (..., 4), the real part first."""
-    real = p[..., :1] * q[..., :1] - (p[..., 1:] * q[..., 1:]).sum(axis=-1, keepdims=True)
-    return np.concatenate([real, p[..., :1] * q[..., 1:] + q[..., :1] * p[..., 1:] + np.cross(
-        p[..., 1:], q[..., 1:])], axis=-1)
+        way = attitude.multiply(way[::2], way[1::2])
+    there = attitude.matrix(way[0]) @ after
+    return np.arccos(np.clip(there @ before, -1.0, 1.0))
 
 
 def _by_flips(session):
