@@ -50,7 +50,8 @@ def test_quoted_cells_that_hold_the_delimiter(tmp_path, capsys):
 @pytest.mark.parametrize("rows", [ROWS, 60 * ROWS])
 def test_quoted_cells_with_an_end_of_a_line_in_them(tmp_path, capsys, rows):
     """A device's own line, kept whole behind the readings; a fault has the file's own line."""
-    body = ['%.2f,%s,"$IMU,%d\r\n"' % (k / 100, lines(COUNTS)[k % ROWS], k) for k in range(rows)]
+    read = lines(COUNTS)
+    body = ['%.2f,%s,"$IMU,%d\r\n"' % (k / 100, read[k % ROWS], k) for k in range(rows)]
     text = "t,ax,ay,az,raw\r\n" + "\r\n".join(body) + "\r\n"
     capture, _ = imported(tmp_path, capsys, text)
     assert len(capture) == rows and (capture.accel[:ROWS] == COUNTS).all()
