@@ -132,8 +132,9 @@ def _by_gravity(session):
     """[(factor, relative width)] by which the gyro reads more than gravity turns from one pause to
     the next, where nothing moves the sensor, or else while it moves."""
     moves = _between_pauses(session)
-    halves = [_of_all(part) for part in (moves[::2], moves[1::2])]
-    factor = _of_all(moves) if len(moves) >= FEWEST_MOVES and all(halves) else None
+    left = np.array([_left(*move, np.exp(TRIED)) for move in moves])
+    halves = [_of_all(moves[k::2], left[k::2]) for k in (0, 1)]
+    factor = _of_all(moves, left) if len(moves) >= FEWEST_MOVES and all(halves) else None
     if factor:
         apart = math.log(halves[0] / halves[1])
         return [(factor, math.hypot(SOUND_GYRO, 0.5 * apart))]
@@ -183,19 +184,22 @@ def _between_pauses(session):
     return moves
 
 
-def _of_all(moves):
+def _of_all(moves, left):
     """The factor by which the gyro's turns of all moves are too large, where that takes gravity to
-    where it is after each of them; None where none does."""
+    where it is after each of them; None where none does. left (moves, TRIED): _left() of each."""
     if len(moves) < FEWEST_MOVES // 2:
         return None
-    best, cost = 1.0, math.log(len(TRIED))
-    for logs in (TRIED, TRIED[::6] / 60.0):  # then half a percent apart
-        tried = best * np.exp(logs)
-        left = np.array([_left(*move, tried) for move in moves])
-        core = 4.0 * PLACED ** 2 / (left ** 2 + PLACED ** 2) ** 2
-        nats = np.log((1.0 - KNOCKED) * core + KNOCKED).sum(axis=0) - cost
-        best = tried[int(nats.argmax())]
-    return 1.0 / best if present(nats.max()) else None
+    best, _ = _likeliest(np.exp(TRIED), left)
+    finer = best * np.exp(TRIED[::6] / 60.0)  # half a percent apart
+    best, nats = _likeliest(finer, np.array([_left(*move, finer) for move in moves]))
+    return 1.0 / best if present(nats) else None
+
+
+def _likeliest(tried, left):
+    """(the likeliest of factors (k,), its nats) by what they leave of moves (moves, k)."""
+    core = 4.0 * PLACED ** 2 / (left ** 2 + PLACED ** 2) ** 2
+    nats = np.log((1.0 - KNOCKED) * core + KNOCKED).sum(axis=0) - math.log(len(TRIED))
+    return tried[int(nats.argmax())], nats.max()
 
 
 def _left(before, after, turns, factors):
