@@ -98,10 +98,14 @@ def lies_otherwise(real, sim, own_real, own_sim):
     """(3,) mg by which two Traces of different motions, with their OwnSensors, read otherwise at
     rest where that is more than their rests scatter by and a floor leans: how it lies, or a bias,
     which what lies in one attitude all the while does not tell apart. None where they read alike,
-    or where their biases are known."""
-    if np.minimum(own_real.bias_sigma, own_sim.bias_sigma).max() < UNKNOWN * BIAS["accel"]:
-        return None
+    or where they lie in several attitudes and their biases are known: what drives up and down
+    shows its bias, and not whether it was mounted so."""
     means = [trace.rest_means(trace.force) / trace.g for trace in (real, sim)]
+    ups = [m / np.maximum(np.linalg.norm(m, axis=1), 1e-9)[:, None] for m in means]
+    several = any((np.abs(u - np.median(u, axis=0)) > LEANS).any() for u in ups)
+    if several and np.minimum(own_real.bias_sigma, own_sim.bias_sigma).max() \
+            < UNKNOWN * BIAS["accel"]:
+        return None
     off = np.median(means[0], axis=0) - np.median(means[1], axis=0)
     scatter = np.sqrt(sum(m.var(axis=0) / len(m) for m in means))
     return 1000.0 * off if (np.abs(off) > APART * scatter + LEANS).any() else None
