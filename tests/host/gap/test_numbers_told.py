@@ -21,13 +21,14 @@ def compared(t, force, rate, real_force, real_rate):
                               read(t, force, rate, 101))
 
 
-def on_a_table(seconds=80.0):
-    """(t, specific force g, rate deg/s) of a table that turns about an axis which leans in the
-    sensor: x has a fifth of what z reads."""
+def on_a_table(seconds=80.0, leans=0.2):
+    """(t, specific force g, rate deg/s) of a table that turns about an upright axis which leans in
+    the sensor: x has so much of what z reads, of its turning and of gravity."""
     t = np.arange(0.0, seconds, 1.0 / RATE_HZ)
     way = np.clip(np.minimum(t % 20.0 - 3.0, 19.5 - t % 20.0) / 1.5, 0.0, 1.0)
     spin = 60.0 * np.sin(0.7 * t) * way
-    return t, np.tile([0.0, 0.0, 1.0], (len(t), 1)), np.stack([0.2 * spin, 0.0 * spin, spin], 1)
+    axis = np.array([leans, 0.0, 1.0])
+    return t, np.tile(axis / np.linalg.norm(axis), (len(t), 1)), np.outer(spin, axis)
 
 
 def test_a_course_that_nothing_told_has_stays_in_the_gap():
@@ -106,7 +107,7 @@ def test_what_shakes_each_log_keeps_no_number_from_being_told():
 def test_a_drift_of_what_stays_level_is_no_bias_of_many_times_its_size():
     """30 mg that come and go, and nothing that tells a scale: it followed the drift, and gravity,
     moved by it, made a bias of 220 mg of a gap of 14."""
-    t, force, rate = on_a_table(60.0)
+    t, force, rate = on_a_table(60.0, leans=0.0)
     drift = np.outer(np.sin(t / 8.0), [0.03, 0.0, 0.02])
     found = compared(t, force, rate, force + drift, rate)
     assert found.left == ["accel"]

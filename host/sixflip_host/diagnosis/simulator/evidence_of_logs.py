@@ -131,11 +131,23 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
     if h.name:
         log += of_factors(np.diag(beta[:, :3])[live], np.diag(widths[:, :3])[live],
                           h.name == "healthy" and unit == 1.0 and not h.shared)
+    if h.name == "gravity_after_rotation":
+        log += of_gravity(beta[:, 3], float(np.max(h.bias_sd)))
     return Fit(h, h.name, log, beta[:, 3] * unit, axes, unit, shared[:k], sigma[:k], delay,
                float(sigma[k]), float(shared[k + 1]), float(sigma[k + 1]),
                (np.eye(3) + beta[:, :3]) / h.full_scale - np.eye(3),
                beta_sigma[:, :3] / h.full_scale, beta_sigma[:, 3] * unit,
                rest * unit if left else None)
+
+
+def of_gravity(constant, g):
+    """Nats by which the prior of a constant (3,) that is gravity is other than that of one whose
+    parts are each of a width g: it is as long as g, up to scale and bias, whatever its direction.
+    In another unit it is not, and with the unit what shakes the real log alone would shrink."""
+    size, width = float(np.linalg.norm(constant)), np.hypot(SHAPE * g, BIAS["accel"])
+    return float(-0.5 * ((size - g) / width) ** 2 - np.log(np.sqrt(2.0 * np.pi) * width)
+                 - np.log(4.0 * np.pi * g ** 2)
+                 + 0.5 * (size / g) ** 2 + 1.5 * np.log(2.0 * np.pi * g ** 2))
 
 
 def of_factors(scale, width, odd):
