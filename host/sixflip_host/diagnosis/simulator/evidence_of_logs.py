@@ -131,8 +131,8 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
     if h.name:
         log += of_factors(np.diag(beta[:, :3])[live], np.diag(widths[:, :3])[live],
                           h.name == "healthy" and unit == 1.0 and not h.shared)
-    if h.name == "gravity_after_rotation":
-        log += of_gravity(beta[:, 3], float(np.max(h.bias_sd)))
+    if h.constant:
+        log += of_gravity(beta[:, 3], h.constant)
     return Fit(h, h.name, log, beta[:, 3] * unit, axes, unit, shared[:k], sigma[:k], delay,
                float(sigma[k]), float(shared[k + 1]), float(sigma[k + 1]),
                (np.eye(3) + beta[:, :3]) / h.full_scale - np.eye(3),

@@ -53,14 +53,14 @@ IN_TURNS = ("time_step", "no_centripetal_term", "lever_arm_missing", "world_fram
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """name ("": the nameless one); signal (n, 3); columns (n, 3, k) with prior sizes mean (k,) and
-    sd (k,); heading: S is a turn about the vertical; free (n, f): further columns of each channel
-    with prior FREE; bias_sd: one, or (3,), None for BIAS; copies: the first so many triples of
-    free, and the first scaled of columns, carry the signal's noise; shape_sd (3, 3): of E, None
-    for SHAPE; smooth_sd: s2, of how much smoother it is, see Fit;
-    full_scale: how many times the signal the real one reads by a full scale that is not stated;
-    slopes: the columns are the world's two level axes, times gravity; shared: the simulator reads
-    by the real one's full scale, whatever that is."""
+    """name ("": the nameless one); signal (n, 3); columns (n, 3, k) with prior sizes mean (k,)
+    and sd (k,); heading: S is a turn about the vertical; free (n, f): further columns of each
+    channel with prior FREE; bias_sd: one, or (3,), None for BIAS; constant: how long the bias is,
+    which is gravity then, or 0; copies: the first so many triples of free, and the first scaled
+    of columns, carry the signal's noise; shape_sd (3, 3): of E, None for SHAPE; smooth_sd: s2, of
+    how much smoother it is, see Fit; full_scale: how many times the signal the real one reads by
+    a full scale that is not stated; slopes: the columns are the world's two level axes, times
+    gravity; shared: the simulator reads by the real one's full scale, whatever that is."""
 
     name: str
     signal: np.ndarray
@@ -70,6 +70,7 @@ class Hypothesis:
     heading: bool = False
     free: np.ndarray = None
     bias_sd: np.ndarray = None
+    constant: float = 0.0
     copies: int = 0
     scaled: int = 0
     shape_sd: np.ndarray = None
@@ -111,7 +112,7 @@ def accelerometer(force, motion, g):
         Hypothesis("no_gravity", force - level, -tilt, half, half),
         Hypothesis("gravity_sign", moved - up, *none(n)),
         Hypothesis("gravity_sign", force - 2.0 * level, -2.0 * tilt, half, half),
-        Hypothesis("gravity_after_rotation", moved, *none(n), bias_sd=g),
+        Hypothesis("gravity_after_rotation", moved, *none(n), bias_sd=g, constant=g),
         Hypothesis("world_frame_forces", world, *none(n), heading=True),
         Hypothesis("no_centripetal_term", force, transport, np.ones(1), np.full(1, 0.1)),
         Hypothesis("no_centripetal_term", force, -spin, *arm),
