@@ -8,6 +8,7 @@ import gc
 import json
 import os
 import signal
+import time
 from pathlib import Path
 
 import pytest
@@ -34,6 +35,36 @@ def pytest_xdist_auto_num_workers():
     waiting, for a board's answer, a download or a package, in which another test computes."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     return (cores or 1) + 1
+
+
+# CI cuts a run off that takes longer than it allows, and what it had found is lost with it.
+LAST_START_S = float(os.environ.get("SIXFLIP_LONG_UNTIL", "inf"))  # of a long test, Unix time
+NOT_BEGUN = []
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_protocol(item):
+    if time.time() > LAST_START_S and item.get_closest_marker("long"):
+        NOT_BEGUN.append(item.nodeid)
+        return True
+    return None
+
+
+def pytest_sessionfinish(session):
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["not_begun"] = NOT_BEGUN
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node):
+    NOT_BEGUN.extend(getattr(node, "workeroutput", {}).get("not_begun", ()))
+
+
+def pytest_terminal_summary(terminalreporter):
+    if NOT_BEGUN:
+        terminalreporter.write_line("%d long tests not begun in the time that there was:" %
+                                    len(NOT_BEGUN), red=True)
+        terminalreporter.write_line("\n".join(sorted(NOT_BEGUN)))
 
 
 # In no package registry, so of all tiers this one alone may be absent in CI.

@@ -1,6 +1,9 @@
-"""Tiers that need Debian packages: one line and a skip for a user, a failure in CI."""
+"""Tiers that need Debian packages: one line and a skip for a user, a failure in CI; and long tests
+for which CI has no time."""
 
 import os
+import subprocess
+import sys
 
 import pytest
 
@@ -42,3 +45,22 @@ def test_a_benchmark_says_so_in_one_line(monkeypatch, capsys):
     assert capsys.readouterr().err == "sixflip: no such board: no such tool\n"
     monkeypatch.setenv("CI", "true")
     assert debian_tier.exit_code_without("such board", "no such tool") == 1
+
+
+@pytest.mark.parametrize("workers", ["0", "2"])
+def test_what_could_not_begin_in_time_is_listed_by_name(workers):
+    """The long test that an earlier run of this one would be is not begun, the short one is."""
+    here = "tests/host/test_debian_tier.py::"
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-n", workers, "-p", "no:cacheprovider",
+         here + "test_a_long_one", here + "test_a_benchmark_says_so_in_one_line"],
+        env={**os.environ, "SIXFLIP_LONG_UNTIL": "0"}, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "1 long tests not begun in the time that there was:\n%stest_a_long_one\n" % here in (
+        done.stdout)
+    assert "1 passed" in done.stdout
+
+
+@pytest.mark.long
+def test_a_long_one():
+    assert float(os.environ.get("SIXFLIP_LONG_UNTIL", "inf")) > 0.0
