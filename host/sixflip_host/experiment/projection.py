@@ -10,6 +10,8 @@ The regression has coefficients of each channel's own and coefficients that they
 priors, and the noise of each channel by maximum likelihood [Bishop, Pattern Recognition and
 Machine Learning (2006), section 3.5].
 """
+from dataclasses import dataclass
+
 import numpy as np
 
 # Of the largest singular value, or of the energy before projection: rounding leaves 1e-29 of the
@@ -105,18 +107,29 @@ def alias_matrix(signatures):
     return names, table.reshape(len(names), len(names))
 
 
-def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
-               covariance=False, residuals=True, every=1):
-    """Linear regression of y (n, 3) = own (n, p) · beta of each channel + columns (n, 3, k) ·
-    shared, with priors own_sd (p,) or (3, p) about 0 and sd (k,) about mean (k,). every: of how
-    many rows each of the n is one.
+@dataclass(frozen=True)
+class Regression:
+    """log: evidence; own (3, p) coefficients of each channel and shared (k,) ones, with their
+    standard errors; covariance (k, k) of the shared ones by the noise alone; left (n, 3), what is
+    not predicted, or None; variance (3,) of the noise."""
 
-    Returns (log evidence, own coefficients (3, p), shared (k,), its sigma (k,), residuals (n, 3),
-    sigma of the own coefficients (3, p)); with covariance also that of the shared ones (k, k).
-    Without residuals these are None, and what they cost on every row is saved.
-    """
+    log: float
+    own: np.ndarray
+    own_sigma: np.ndarray
+    shared: np.ndarray
+    shared_sigma: np.ndarray
+    covariance: np.ndarray
+    left: np.ndarray
+    variance: np.ndarray
+
+
+def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None, residuals=True,
+               every=1, variance=None):
+    """Regression of y (n, 3) = own (n, p) · beta of each channel + columns (n, 3, k) · shared,
+    with priors own_sd (p,) or (3, p) about 0 and sd (k,) about mean (k,). every: of how many rows
+    each of the n is one; variance (3,): of a noise near the one that is looked for. Without
+    residuals what they cost on every row is saved: standard errors are those of noise alone."""
     n, p = own.shape
-    k = columns.shape[2]
     weight = every_weight = np.ones(n) if rows is None else 1.0 / rows
     raw, fewer = (y, own, columns), max(1, n // MOST_ROWS) if every == 1 else 1
     weight, y, own, columns = (x[::fewer] for x in (weight, y, own, columns))
@@ -125,59 +138,54 @@ def regression(y, own, own_sd, columns, mean, sd, inflation, live, rows=None,
     own = own * weight[:, None]
     # Of each channel, and as rows that lie together: that is the speed of the products.
     columns = np.multiply(columns.transpose(1, 0, 2), weight[:, None], order="C")
-    size = 3 * p + k
     prior = np.concatenate([np.broadcast_to(own_sd, (3, p)).ravel(), sd])
-    variance = np.maximum((y - y.mean(axis=0)).var(axis=0), LEAST_LEFT)
-    gram_own = own.T @ own * k_rows
-    cross = [own.T @ channel * k_rows for channel in columns]
-    gram_shared = [channel.T @ channel * k_rows for channel in columns]
-    right_own = (own.T @ y * k_rows).T
-    right_shared = [channel.T @ y[:, c] * k_rows for c, channel in enumerate(columns)]
+    if variance is None:
+        variance = np.maximum((y - y.mean(axis=0)).var(axis=0), LEAST_LEFT)
+    grams, rights = products(y, own, columns, k_rows)
     power, looked = (y ** 2).sum(axis=0) * k_rows, len(y) * k_rows
     for _ in range(ROUNDS):
-        gram, right = np.diag(1.0 / prior ** 2), np.zeros(size)
-        for c in range(3):
-            if not live[c]:
-                continue
-            w = 1.0 / (variance[c] * inflation)
-            a = slice(c * p, (c + 1) * p)
-            gram[a, a] += w * gram_own
-            gram[a, 3 * p:] += w * cross[c]
-            gram[3 * p:, a] += w * cross[c].T
-            gram[3 * p:, 3 * p:] += w * gram_shared[c]
-            right[a] += w * right_own[c]
-            right[3 * p:] += w * right_shared[c]
-        gram[np.diag_indices(size)] *= 1.0 + ROUNDED
+        weights = live / (variance * inflation)
+        gram = np.diag(1.0 / prior ** 2) + np.tensordot(weights, grams, 1)
+        gram[np.diag_indices(len(gram))] *= 1.0 + ROUNDED
         scale = np.sqrt(np.diag(gram))
-        solved = np.linalg.solve(gram / np.outer(scale, scale), right / scale) / scale
-        beta, shared = solved[:3 * p].reshape(3, p), solved[3 * p:]
+        solved = np.linalg.solve(gram / np.outer(scale, scale), weights @ rights / scale) / scale
         # What is left, from the products: the rows themselves are gone through once, at the end.
-        explained = [b @ (2.0 * own_c - gram_own @ b - 2.0 * cross_c @ shared)
-                     + shared @ (2.0 * right_c - gram_c @ shared)
-                     for b, own_c, cross_c, right_c, gram_c in zip(
-                         beta, right_own, cross, right_shared, gram_shared)]
+        explained = (2.0 * rights - grams @ solved) @ solved
         before, variance = variance, np.maximum((power - explained) / looked, LEAST_LEFT)
         if np.all(np.abs(variance - before) <= SETTLED * before):
             break
+    beta, shared = solved[:3 * p].reshape(3, p), solved[3 * p:]
     left = y - own @ beta.T - (columns @ shared).T
     variance = np.maximum((left ** 2).mean(axis=0), LEAST_LEFT)
-    effective = n / inflation
-    log = -0.5 * effective * np.log(variance[live]).sum()
-    log -= 0.5 * ((solved / prior) ** 2).sum()
-    log -= 0.5 * np.linalg.slogdet(gram * np.outer(prior, prior))[1]
+    log = -0.5 * (n / inflation * np.log(variance[live]).sum() + ((solved / prior) ** 2).sum()
+                  + np.linalg.slogdet(gram * np.outer(prior, prior))[1])
     inverse = np.linalg.inv(gram)
     sigma = np.sqrt(np.maximum(np.diag(inverse), 0.0))
     shared = shared + mean
     if residuals:
         weights = live / (variance * inflation)
         sigma = np.maximum(sigma, scattered(inverse, left, own, columns, k_rows * weights))
-        y, own, columns = raw
-        left = y - own @ beta.T - columns @ shared
-        sigma = np.hypot(sigma, uneven(solved, left, own, columns, every_weight, every * weights,
+        left = raw[0] - raw[1] @ beta.T - raw[2] @ shared
+        sigma = np.hypot(sigma, uneven(solved, left, *raw[1:], every_weight, every * weights,
                                        prior))
-    result = (log, beta, shared, sigma[3 * p:], left if residuals else None,
-              sigma[:3 * p].reshape(3, p))
-    return result + (inverse[3 * p:, 3 * p:],) if covariance else result
+    return Regression(log, beta, sigma[:3 * p].reshape(3, p), shared, sigma[3 * p:],
+                      inverse[3 * p:, 3 * p:], left if residuals else None, variance)
+
+
+def products(y, own, columns, number):
+    """(3, 3 p + k, 3 p + k), (3, 3 p + k): normal equations of each channel, of y (n, 3) on own
+    (n, p) of its own and columns (3, n, k) that all share; each row stands for a number."""
+    p, size = own.shape[1], 3 * own.shape[1] + columns.shape[2]
+    grams, rights = np.zeros((3, size, size)), np.zeros((3, size))
+    gram, right, shared = own.T @ own, own.T @ y, slice(3 * p, size)
+    for c, channel in enumerate(columns):
+        mine = slice(c * p, (c + 1) * p)
+        grams[c, mine, mine] = gram
+        grams[c, mine, shared] = own.T @ channel
+        grams[c, shared, mine] = grams[c, mine, shared].T
+        grams[c, shared, shared] = channel.T @ channel
+        rights[c, mine], rights[c, shared] = right[:, c], channel.T @ y[:, c]
+    return grams * number, rights * number
 
 
 def scattered(inverse, left, own, columns, weights):

@@ -205,7 +205,7 @@ def of_one_axis(x, y):
     result = projection.regression(
         np.repeat(y[:, None], 3, 1), x[:, None], np.full(3, 0.04)[:, None],
         np.zeros((len(x), 3, 0)), np.zeros(0), np.zeros(0), 4.0, np.ones(3, bool))
-    return result[1][0, 0], result[5][0, 0]
+    return result.own[0, 0], result.own_sigma[0, 0]
 
 
 def test_a_plate_that_bends_is_the_scale_of_neither_sensor_on_it():

@@ -57,7 +57,7 @@ def test_a_coefficient_is_as_uncertain_as_stretches_of_the_log_disagree_on_it():
     result = projection.regression(
         y, x, np.array([10.0]), np.zeros((2000, 3, 0)), np.zeros(0), np.zeros(0), 1.0,
         np.ones(3, bool))
-    sigma = result[5][:, 0]
+    sigma = result.own_sigma[:, 0]
     assert sigma == pytest.approx(slopes.std() / np.sqrt(20.0), rel=0.4)
 
 
@@ -67,7 +67,7 @@ def test_columns_that_are_one_share_what_they_explain():
     result = projection.regression(
         np.repeat(0.5 * x, 3, 1), np.repeat(x, 3, 1), np.full(3, 1e6), np.zeros((4096, 3, 0)),
         np.zeros(0), np.zeros(0), 1.0, np.ones(3, bool))
-    assert result[1].sum(axis=1) == pytest.approx(0.5)
+    assert result.own.sum(axis=1) == pytest.approx(0.5)
 
 
 def test_a_coefficient_far_beyond_its_prior_has_the_evidence_of_noise_that_has_settled():
@@ -88,7 +88,7 @@ def test_a_coefficient_far_beyond_its_prior_has_the_evidence_of_noise_that_has_s
     wanted = -0.5 * (len(x) / alike * 2.0 * settled + (beta / prior) ** 2
                      + np.log(precision * prior ** 2))
     log = projection.regression(y, x, np.array([prior]), np.zeros((4000, 3, 0)), np.zeros(0),
-                                np.zeros(0), alike, np.array([True, False, False]))[0]
+                                np.zeros(0), alike, np.array([True, False, False])).log
     assert log == pytest.approx(wanted, abs=0.05)
 
 

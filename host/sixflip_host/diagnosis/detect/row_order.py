@@ -4,14 +4,14 @@ than they were measured in, and runs that were read backwards.
 The stamps do not tell, since they are those of the rows as they came. A motion does: where two
 blocks were exchanged the readings leap at three places that lie a block apart, and go on smoothly
 at all three once the blocks are exchanged again; a run that was reversed leaps at its two ends.
-How smoothly they go on is the step over a place less the mean of the steps before and after it,
-and its likelihood Student's t of the width that such bends have around there. So a log competes as
-it stands with the same log in another order, and noise or shaking, of which no order is smoother
-than another, speaks for neither. Two explanations compete with a block. A motion that comes again
-after as many rows as the block has, as a machine's does, leaps there once more, and a run that is
-reversed from a leap to the next ends as it began. A buffer that was handed over twice leaps back
-by its own length, and reversed puts a row beside itself. What was tried is paid: every row where a
-block may begin, and every length.
+How smoothly they go on is the step over a place less the mean of the steps beside it, and its
+likelihood Student's t of the width that such bends have around there. So a log competes as it
+stands with the same log in another order, and noise or shaking, of which no order is smoother,
+speaks for neither. Two explanations compete with a block. A motion that comes again after as many
+rows as the block has, as a machine's does, leaps there once more, and a run that is reversed from
+a leap to the next ends as it began. A buffer that was handed over twice leaps back by its own
+length, and reversed puts a row beside itself. Every row where a block may begin is paid for, and
+every length.
 """
 import copy
 import math
@@ -68,8 +68,8 @@ def _damage(sensor, way, length, nats, blocks, share):
            "blocks of %d are exchanged with the next %d" % (length, length))
     return Damage("row order", sensor, (), "timing",
                   "%s are out of order, about %.2g %% of them: %s" % (who, 100.0 * share, how),
-                  nats, {"rows": blocks * (_places(way, length)[-1] + 1),
-                         "block": length, "share": round(share, 4)})
+                  nats, {"rows": blocks * (_places(way, length)[-1] + 1), "block": length,
+                         "share": round(share, 4)})
 
 
 def _best(capture):
@@ -234,18 +234,15 @@ def _share(x, width, way, length, starts):
     the motion tells the order."""
     first = np.arange(2, len(x) - 2 * length - 2)
     told = int((_gain(x, width, way, length, first) < -SEEN).sum())
-    size = _places(way, length)[-1] + 1
-    return min(1.0, size * len(starts) / (told + len(starts)))
+    return min(1.0, (_places(way, length)[-1] + 1) * len(starts) / (told + len(starts)))
 
 
 def _in_order(capture, sensor, way, length, starts):
     """The Capture with its rows in the other order from each of the first rows on."""
-    rows = np.arange(len(capture))
-    size = _places(way, length)[-1] + 1
+    ordered, rows = copy.copy(capture), np.arange(len(capture))
     for start in starts:
-        places = np.arange(start, start + size)
+        places = np.arange(start, start + _places(way, length)[-1] + 1)
         rows[places] = _source(way, length, start)(places)
-    ordered = copy.copy(capture)
     # What else the device reads stands in the same buffer; stamps and poses are the reader's.
     for kind in (*SENSORS, "temp", "mag") if sensor == "device" else (sensor,):
         if getattr(capture, kind) is not None:

@@ -92,7 +92,7 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
     n = len(measured)
     delay, k = 0.0, h.columns.shape[2]
     target = measured / unit
-    turned = np.einsum("ij,njk->nik", axes, h.columns)
+    turned, variance = axes @ h.columns, None
     for last in (False, False, True):
         every = 1 if last and left else max(1, n // most)  # a few rows will do for the rest
         some = slice(None, None, every)
@@ -117,12 +117,12 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
                                  for width in own_sd], axis=1)
         result = regression((target - signal)[some], np.concatenate(own, 1), widths, columns,
                             mean, sd, inflation, live, rows if rows is None else rows[some],
-                            residuals=last and left, every=every)
-        step = float(np.clip(result[2][k], -0.05, 0.05))
+                            residuals=last and left, every=every, variance=variance)
+        step, variance = float(np.clip(result.shared[k], -0.05, 0.05)), result.variance
         delay += step
         if not left and abs(step) < SETTLED_S:
             break
-    log, beta, shared, sigma, rest, beta_sigma = result
+    log, beta, shared, sigma = result.log, result.own, result.shared, result.shared_sigma
     # Of a channel that reads a part of the signal only, the smoothing is that of the part.
     part = np.maximum(1.0 + np.diag(beta[:, :3]) + (shared[:h.scaled] if h.scaled else 0.0), DEAD)
     for weaker in (gains(h, beta, shared), smoothed(shared[k + 1] / part, noise_bends)):
@@ -136,8 +136,8 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
     return Fit(h, h.name, log, beta[:, 3] * unit, axes, unit, shared[:k], sigma[:k], delay,
                float(sigma[k]), float(shared[k + 1]), float(sigma[k + 1]),
                (np.eye(3) + beta[:, :3]) / h.full_scale - np.eye(3),
-               beta_sigma[:, :3] / h.full_scale, beta_sigma[:, 3] * unit,
-               rest * unit if left else None)
+               result.own_sigma[:, :3] / h.full_scale, result.own_sigma[:, 3] * unit,
+               result.left * unit if left else None)
 
 
 def of_gravity(constant, g):

@@ -78,11 +78,9 @@ def fitted(trace, sensor):
     rows, inflation = None, 1.0
     for _ in range(3):
         result = regression(force - signal, own, sds, columns, np.zeros(7), prior, inflation,
-                            live, rows, covariance=True)
-        left = result[4]
-        rows = local_noise(left)
-        inflation = align_by.independent(left / rows[:, None])
-    shared = result[2]
+                            live, rows)
+        rows = local_noise(result.left)
+        inflation = align_by.independent(result.left / rows[:, None])
     groups = moves_of(trace, t)
     if len(np.unique(groups)) < FEWEST_MOVES:
         return None
@@ -91,11 +89,11 @@ def fitted(trace, sensor):
         keep = groups != number
         parts.append(regression(
             (force - signal)[keep], own[keep], sds, columns[keep], np.zeros(7), prior, inflation,
-            live, rows[keep], residuals=False)[2])
+            live, rows[keep], residuals=False).shared)
     parts = np.array(parts)
     apart = parts - parts.mean(axis=0)
-    covariance = result[6] + (len(parts) - 1.0) / len(parts) * apart.T @ apart
-    return OwnMotion(float(shared[6]), float(np.sqrt(covariance[6, 6])))
+    covariance = result.covariance + (len(parts) - 1.0) / len(parts) * apart.T @ apart
+    return OwnMotion(float(result.shared[6]), float(np.sqrt(covariance[6, 6])))
 
 
 def moves_of(trace, t):
