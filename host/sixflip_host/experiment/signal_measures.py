@@ -115,9 +115,10 @@ class Groups:
 
 def noise_levels(rests, rate, walks):
     """(density, flicker, walk) as Levels of the rests, a list of (n,) readings of one axis;
-    walks: whether a random walk is looked for, else its Level is None. A rest that reads one
-    value throughout says nothing, its noise is below the steps: where all do, no Level is known
-    and all are None."""
+    walks: whether the rests are long enough to say how fast a bias walks, else that Level is None:
+    what is slow in them has its share all the same, or the white noise would lose it. A rest that
+    reads one value throughout says nothing, its noise is below the steps: where all do, no Level
+    is known and all are None."""
     rests = [x for x in rests if np.ptp(x) > 0]
     if not rests:
         return None, None, None
@@ -125,11 +126,11 @@ def noise_levels(rests, rate, walks):
     f, power, shape = (np.concatenate([getattr(g, k) for g in groups])
                        for k in ("f", "power", "shape"))
     columns = np.stack([np.ones(len(f)), 1.0 / (2.0 * np.pi * f), 1.0 / (2.0 * np.pi * f) ** 2],
-                       1)[:, :3 if walks else 2]
+                       1)
     squares, top = _likeliest(columns, power, shape)
     profiles = [_level(columns, power, shape, squares, top, k) for k in range(columns.shape[1])]
     profiles = [_sparing(columns, power, shape, profiles, k) for k in range(len(profiles))]
-    return (*profiles, None) if not walks else tuple(profiles)
+    return tuple(profiles) if walks else (*profiles[:2], None)
 
 
 def _sparing(columns, power, shape, levels, k):

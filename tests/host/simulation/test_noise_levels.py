@@ -84,6 +84,18 @@ def test_a_rest_that_reads_one_value_says_nothing_of_the_noise():
     assert levels([np.ones(6000)], RATE, True) == (None, None, None)
 
 
+@pytest.mark.parametrize("slow", [
+    lambda t: 0.6 * (t > 100.0), lambda t: 0.2 * np.exp(-t / 40.0),
+    lambda t: 0.12 * np.sin(2.0 * np.pi * t / 50.0)], ids=["a step", "warming up", "a swing"])
+def test_what_is_slow_in_a_rest_too_short_for_a_walk_takes_nothing_from_the_white_noise(slow):
+    """Beside a step of twenty times the noise of a sample it was none."""
+    x = readings(250.0, walk=0.0)
+    density, flicker, walk = signal_measures.noise_levels(
+        [x + slow(np.arange(len(x)) / RATE)], RATE, False)
+    assert density.value == pytest.approx(N, rel=0.06) and density.low > 0.8 * N
+    assert flicker.low == 0.0 and walk is None
+
+
 def test_a_line_is_no_noise():
     x = readings(600.0, walk=0.0)
     wave = 5e-3 * np.sin(2.0 * np.pi * 1.7 * np.arange(len(x)) / RATE)
