@@ -36,6 +36,7 @@ FORMS = {"hard": lambda rate, band: rate * (np.abs(rate) >= band),
 # that are tried are STEP apart; of itself, to which the likeliest is found, and by which those are
 # apart that say how well it is known, by nats that are never quite none.
 MOST, STEP, NEAR, BESIDE, SURE = 0.5, 1.4, 0.002, 0.05, 0.01
+SHOWN = 0.5  # of the nats of the likeliest band, that one has at least that is a step from it
 SPOILT = 10.0  # times what no band leaves, of one beside which the scale is none of a part's
 # Times the noise of both from which on a band is none of their shaking at rest. Nor is one below a
 # step of the real one's codes any other than those.
@@ -161,9 +162,18 @@ def _of_axis(axis, sensor_fit, sim, noise, least, centres):
         rest, gain = left(banded(form, centre, width))
         return (rest ** 2).mean() if abs(gain - 1.0) < GAIN else SPOILT * (plain ** 2).mean()
 
+    number = len(plain) / align_by.independent(plain)
+    roughly = {}
+    for way in product(FORMS, centres):
+        near = min((power(width, *way), width) for width in widths)
+        roughly[way] = 0.5 * number * np.log((plain ** 2).mean() / near[0]), near[1]
+    gain = max(nats for nats, _ in roughly.values())
+    if gain < SHOWN * (0.5 * np.log(number) + np.log(
+            conventions.PRIOR_HEALTHY / conventions.PRIOR_EACH)):
+        return None
     likeliest = []
-    for form, centre in product(FORMS, centres):
-        near = min(widths, key=lambda width: power(width, form, centre))
+    for (form, centre), near in [(way, near) for way, (nats, near) in roughly.items()
+                                 if nats >= SHOWN * gain]:
         best = minimize_scalar(
             power, args=(form, centre), method="bounded",
             bounds=(max(least, near / STEP), near * STEP), options={"xatol": NEAR * near})
