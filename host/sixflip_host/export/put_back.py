@@ -133,6 +133,9 @@ def from_diagnosis(answer):
         if len(names) > 1:
             instead.append("%s of the %s may as well be %s: these logs do not tell them apart" % (
                 name, SENSORS[kind], " or ".join(n for n in names if n != name)))
+    left += ["%s (%s)" % (name.replace("_", " "), kind) for kind in SENSORS for name in (
+        "shaking", "fast_noise") if any(p["differs"] for p in numbers.get(kind, {}).get(
+            name, {}).values())]
     accel, gyro = (triad(kind, numbers.get(kind, {}), effects[kind], lags[kind], delays[kind],
                          float(rate.get("real") or 100.0)) for kind in ("accel", "gyro"))
     # Slopes are about the temperature that the diagnosis took them about, and biases beside them.

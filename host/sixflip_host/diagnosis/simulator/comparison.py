@@ -13,6 +13,7 @@ from . import (
     held_readings,
     motion_match,
     noise_and_registers,
+    noise_band,
     numbers_told,
     one_motion,
     own_calibration,
@@ -228,6 +229,8 @@ def numbers_of(real, sim, mended, own, fits, findings):
                or c.name in convention_findings.OF_ATTITUDE and not real.rests]
     usable = {k: not any(c.sensor in (k, "device") for c in spoiled) for k in ("accel", "gyro")}
     densities, on_noise = noise_and_registers.noises(real, mended)
+    if not findings:  # in another unit or time it is another noise
+        densities += noise_band.falls_off(real, sim)
     rounded = {kind: mended.quantum[kind == "gyro"] / np.sqrt(12.0) for kind in fits
                if single_log.silent(mended, kind)}
     return (parameters.shapes(*own, fits, usable, rounded) + densities

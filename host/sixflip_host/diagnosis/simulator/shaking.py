@@ -171,25 +171,30 @@ def _on_its_rows(real, sim, aligned, values, cut):
 def _spectra(trace, values, cut, top):
     """Spectra of values (n, 3) at the rows of a Trace, away from what is cut off (n,), up to a
     frequency, or None where there is too little of moving or of rest."""
+    made, still, read = pieces(trace, values, cut, np.arange(FEET_HZ, top, 1.0 / PIECE_S))
+    moves, rests = read & ~still.any(axis=1), read & still.all(axis=1)
+    if moves.sum() * PIECE_S < FEWEST_S or rests.sum() < FEWEST_RESTS:
+        return None
+    return Spectra(made[moves], np.flatnonzero(moves),
+                   (np.abs(made[rests]) ** 2).mean(axis=0), int(rests.sum()))
+
+
+def pieces(trace, values, cut, wanted):
+    """(what Fourier makes of pieces of values (n, 3) of a Trace at the wanted frequencies (f,),
+    (m, f, 3), scaled to power; (m, rows) rows at rest; (m,) read without a gap or a cut row)."""
     still = np.zeros(len(values), bool)
     for first, end in trace.rests:
         still[first:end] = True
     gap = np.diff(trace.t, append=trace.t[-1:]) * trace.rate_hz > GAP
     rows = max(2, int(round(PIECE_S * trace.rate_hz)))
-    pieces = len(values) // rows
-    read = ~(gap | trace.put_in | cut)[:pieces * rows].reshape(-1, rows).any(axis=1)
-    rest = still[:pieces * rows].reshape(-1, rows)
-    moves, rests = read & ~rest.any(axis=1), read & rest.all(axis=1)
-    if moves.sum() * PIECE_S < FEWEST_S or rests.sum() < FEWEST_RESTS:
-        return None
-    x = values[:pieces * rows].reshape(-1, rows, 3)
+    number = len(values) // rows
+    read = ~(gap | trace.put_in | cut)[:number * rows].reshape(-1, rows).any(axis=1)
+    x = values[:number * rows].reshape(-1, rows, 3)
     x = x - x.mean(axis=1, keepdims=True)
     t = np.arange(rows) - (rows - 1) / 2.0
     x = x - t[:, None] * (np.einsum("j,ijk->ik", t, x) / (t @ t))[:, None]  # how it is steered
     window = np.hanning(rows + 1)[:rows]
     made = np.fft.rfft(x * window[:, None], axis=1) * np.sqrt(2.0 / (rows * (window ** 2).sum()))
     hz = np.fft.rfftfreq(rows, 1.0 / trace.rate_hz)
-    wanted = np.arange(FEET_HZ, top, 1.0 / PIECE_S)
-    made = made[:, np.argmin(np.abs(hz[:, None] - wanted), axis=0)]
-    return Spectra(made[moves], np.flatnonzero(moves),
-                   (np.abs(made[rests]) ** 2).mean(axis=0), int(rests.sum()))
+    return (made[:, np.argmin(np.abs(hz[:, None] - wanted), axis=0)],
+            still[:number * rows].reshape(-1, rows), read)
