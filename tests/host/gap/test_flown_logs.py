@@ -54,6 +54,19 @@ def test_a_healthy_pair_is_not_accused(flight):
     assert found.alignment.same and not found.conventions and not found.differs
 
 
+@pytest.mark.parametrize("seconds", [11.0, 19.9])
+def test_a_log_of_ten_seconds_is_compared(seconds):
+    """Of less than twenty nothing was seen, and a healthy simulator's answer was that of one whose
+    gyro reads a tenth too much."""
+    flight = flown(3, seconds=seconds)
+    force, rate = forces(flight[1], flight[4]), flight[2]
+    healthy = compared(flight, *as_real(force, rate))
+    assert healthy.fits and not healthy.conventions and not healthy.differs
+    scaled = compared(flight, *as_real(force, 1.1 * rate))
+    scales = [p.difference for p in scaled.differs if (p.name, p.sensor) == ("scale", "gyro")]
+    assert scales == pytest.approx([-100.0 * 0.1 / 1.1] * 3, abs=0.1)
+
+
 def test_a_turned_sign_is_told(flight):
     """It was "this capture cannot tell", at a correlation of 1.000."""
     turned = compared(flight, -forces(flight[1], flight[4]), flight[2])
