@@ -103,11 +103,20 @@ def parameter_rows(simulator, all_of_them=False):
                     continue
                 label = "%s%s, %s" % (name.replace("_", " "), "" if axis == "all" else " " + axis,
                                       SENSOR[sensor])
-                rows.append((label, owned(p["real"], p["real_interval_90"], p),
-                             owned(p["simulator"], p["simulator_interval_90"], p),
+                simulated = owned(p["simulator"], p["simulator_interval_90"], p)
+                rows.append((label, owned(p["real"], p["real_interval_90"], p), simulated,
                              valued(p["difference"], p["difference_interval_90"], p["unit"]),
-                             p["how"] if p["set"] is None else "%.4g %s" % (p["set"], p["unit"])))
+                             wanted(p, simulated)))
     return rows
+
+
+def wanted(parameter, simulated):
+    """What to set; where the log does not show what the simulator has, by how much to change it."""
+    if parameter["set"] is None:
+        return parameter["how"]
+    value = "%.4g %s" % (parameter["set"], parameter["unit"])
+    unknown = simulated == "-" and parameter["set"] == parameter["difference"]
+    return value + " more than it has" if unknown else value
 
 
 def effect_rows(simulator):

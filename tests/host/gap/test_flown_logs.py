@@ -117,3 +117,14 @@ def test_a_noise_that_is_not_known_is_not_told_as_none():
     gap = {"accel": {"unit": "mg", "before": 30.0, "after": 4.0, "floor": 0.0}}
     said, = simulator_words.lines({"gap": gap, "task": None, "unseen": []})
     assert said.endswith("noise alone is not known.")
+
+
+def test_what_to_set_is_a_change_where_the_log_does_not_show_what_there_is():
+    """Whoever set the -50.95 mg that were told of a simulator with 50 mg would have had -101."""
+    number = {"differs": True, "unit": "mg", "difference": -50.9, "how": "", "set": -50.9,
+              "difference_interval_90": [-52.0, -49.0], "real": None, "real_interval_90": None,
+              "simulator": None, "simulator_interval_90": None}
+    shown = {**number, "set": 0.1, "simulator": 51.0, "simulator_interval_90": [50.5, 51.5]}
+    for each, said in ((number, "-50.9 mg more than it has"), (shown, "0.1 mg")):
+        (row,) = simulator_words.parameter_rows({"parameters": {"accel": {"bias": {"x": each}}}})
+        assert row[4] == said
