@@ -111,7 +111,7 @@ def parameter_rows(simulator, all_of_them=False):
 
 
 def wanted(parameter, simulated):
-    """What to set; where the log does not show what the simulator has, by how much to change it."""
+    """What to set; where the log does not show what it has, by how much to change it."""
     if parameter["set"] is None:
         return parameter["how"]
     value = "%.4g %s" % (parameter["set"], parameter["unit"])

@@ -212,6 +212,15 @@ def test_the_sensors_own_time_is_better_than_the_systems(tmp_path, capsys):
     assert (np.diff(capture.t_us) == 10_000).all()
 
 
+def test_nanoseconds_are_the_sensors_own_beside_milliseconds(tmp_path, capsys):
+    """A phone stamps its readings by the one, and its app writes the other when they come."""
+    late = np.maximum.accumulate(SECONDS + np.random.default_rng(26).exponential(0.02, ROWS))
+    times = ["%.0f,%.0f" % (1e3 * came, 1e9 * t) for came, t in zip(late, SECONDS)]
+    capture, said = imported(tmp_path, capsys, table(times, "timeMillis,timeNanos"))
+    assert "times are in the column timeNanos" in said
+    assert (np.diff(capture.t_us) == 10_000).all()
+
+
 def test_a_finer_clock_is_better_than_whole_seconds(tmp_path, capsys):
     times = ["%s,%.0f" % (clock(t, "%Y-%m-%d %H:%M:%S"), 1e3 * t) for t in SECONDS]
     capture, said = imported(tmp_path, capsys, table(times, "Timestamp,Milliseconds"))

@@ -209,7 +209,7 @@ def looks_like_header(names):
 
 
 def times(names):
-    """[(column name or (seconds, nanoseconds), unit or "")] that may be times, best first."""
+    """[(column name or (seconds, nanoseconds), unit or "")] of times, best and finest first."""
     ranks = []
     for name in names:
         bare, _ = _without_unit(name)
@@ -223,11 +223,11 @@ def times(names):
         elif len(words) == 1 and len(words[0]) > 1 \
                 and UNIT_OF_TIME.get(words[0]) in TIME_UNITS:
             ranks.append((2, name, UNIT_OF_TIME[words[0]]))
-    pairs = _second_pairs(names)
-    chosen = [(pair, "s") for pair in pairs]
-    taken = {name for pair in pairs for name in pair}
-    ranked = sorted((row for row in ranks if row[1] not in taken), key=lambda row: row[0])
-    return chosen + [(name, unit) for _, name, unit in ranked]
+    chosen = [(pair, "s") for pair in _second_pairs(names)]
+    taken = {name for pair, _ in chosen for name in pair}
+    left = [row for row in ranks if row[1] not in taken]
+    return chosen + [row[1:] for row in sorted(left, key=lambda row: (
+        row[0], row[2] not in ("ns", "us")))]
 
 
 def unit_of_time(name):
