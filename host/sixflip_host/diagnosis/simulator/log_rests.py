@@ -2,9 +2,10 @@
 and what a log that never rests says its sensor went through, and its noise.
 
 Of that the gyro carries the attitude, and the vertical is where the specific force lies over some
-twenty seconds, in the frame that it carries: what moves a thing averages out, since it does not go
-ever faster [Mahony et al., IEEE Trans. Autom. Control 53 (2008), 1203, whose filter this is
-without its delay: past and future alike]. The noise is that of the quick end of the spectrum.
+twenty seconds, or as many as a shorter log has, in the frame that it carries: what moves a thing
+averages out, since it does not go ever faster [Mahony et al., IEEE Trans. Autom. Control 53
+(2008), 1203, whose filter this is without its delay: past and future alike]. The noise is that of
+the quick end of the spectrum.
 """
 import numpy as np
 
@@ -35,7 +36,8 @@ MOST_SPANS = 1000  # of which the gyro's level is told: each is held against eac
 COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
 UP = np.array([0.0, 0.0, 1.0])  # of the world
 # Hz below which the force is the vertical's; the first ones are for a bias of a gyro that turns
-# the frame by more than a radian in the period of the last (20 deg/s, ITG-3205 PS).
+# the frame by more than a radian in the period of the last (20 deg/s, ITG-3205 PS). A log that
+# is shorter than the period of the last ones has the others.
 BANDS, BIAS = (0.4, 0.1, 0.05), np.radians(20.0)
 # Of gravity, by which what moves a thing is still there in such a mean: 2 m/s of change in 20 s
 # are a hundredth, a drone that leans into a curve has some hundredths.
@@ -151,18 +153,19 @@ def calm(capture, rate_hz):
 def levelled(t, force, rate, rate_hz, g):
     """(turn (n, 3, 3) body to world, bias (3,) rad/s that is known but about the vertical, speed
     (n, 3) m/s in the body), or None where nothing shows the vertical; force, rate (n, 3)."""
-    if len(t) < 2 or (t[-1] - t[0]) * BANDS[-1] < 1.0:
+    bands = [band for band in BANDS if len(t) > 1 and (t[-1] - t[0]) * band >= 1.0]
+    if not bands:
         return None
     bias = np.zeros(3)
-    for band in BANDS:
+    for band in bands:
         course = _carried(t, rate - bias)
         bias = bias + _bias(t, course, _vertical(force, course, rate_hz, band)[0], band)
     course = _carried(t, rate - bias)
-    vertical, size = _vertical(force, course, rate_hz, BANDS[-1])
+    vertical, size = _vertical(force, course, rate_hz, bands[-1])
     if size.min() < SUSPENDED * g:
         return None
     turn = _smallest(vertical) @ course
-    return turn, bias, _speed(t, turn, force - g * turn[:, 2, :], rate_hz)
+    return turn, bias, _speed(t, turn, force - g * turn[:, 2, :], rate_hz, bands[-1])
 
 
 def _carried(t, rate):
@@ -208,12 +211,12 @@ def _smallest(vertical):
     return rotations(axis / np.maximum(sine, 1e-12)[:, None] * angle[:, None])
 
 
-def _speed(t, turn, moved, rate_hz):
+def _speed(t, turn, moved, rate_hz, band):
     """(n, 3) m/s in the body: the integral of what moves it, less what is as slow as that."""
     world = np.einsum("nij,nj->ni", turn, moved)
     steps = 0.5 * (world[1:] + world[:-1]) * np.diff(t)[:, None]
     total = np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
-    return np.einsum("nji,nj->ni", turn, total - _slow(total, rate_hz, BANDS[-1]))
+    return np.einsum("nji,nj->ni", turn, total - _slow(total, rate_hz, band))
 
 
 def _slow(values, rate_hz, slow_hz):
