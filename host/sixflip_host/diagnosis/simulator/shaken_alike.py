@@ -1,6 +1,6 @@
-"""Whether what shakes the real sensor, at rest or on its way, shakes the simulator's as much, by the
-power of both logs in one band of frequencies: that depends neither on their rates nor on what each
-log by itself makes of a bump, or of the noise of its quiet seconds.
+"""Whether what shakes the real sensor, at rest or on its way, shakes the simulator's as much, by
+the power of both logs in one band of frequencies: that depends neither on their rates nor on what
+each log by itself makes of a bump, or of the noise of its quiet seconds.
 """
 from dataclasses import dataclass
 
@@ -56,20 +56,28 @@ def found_alike(finding, own, other):
 
 def on_the_way(real, simulated, letters):
     """Whether axes of the accelerometer are shaken most of the time with the same power in both
-    logs, Sessions each, in the band that both show above what a hand, legs and wheels do. How many
-    times its quiet seconds a log is shaken depends on its noise, and the power beyond does not."""
-    rates = [s.rate for sessions in (real, simulated) for s in sessions]
-    logs = [_beyond_quiet(sessions, shake_detector.edge(min(rates)), 0.5 * min(rates))
-            for sessions in (real, simulated)]
-    if None in logs:
-        return False
-    (own, sigma, _), (theirs, their_sigma, noise) = (
-        [values[list(map("xyz".index, letters))] for values in log] for log in logs)
-    if not (min(own.min(), theirs.min()) > 0.0 and theirs.sum() > ANY * np.linalg.norm(noise)):
-        return False
-    apart = np.log(own / theirs) ** 2 / (
-        (sigma / own) ** 2 + (their_sigma / theirs) ** 2 + (2.0 * hypotheses.SHAPE) ** 2)
-    return bool(special.chdtrc(len(letters), apart.sum()) > UNLIKE)
+    logs, Sessions each, in each octave that both show above what a hand, legs and wheels do and
+    that has its part of the real one's. How many times its quiet seconds a log is shaken depends
+    on its noise, and the power beyond does not."""
+    lowest = min(s.rate for sessions in (real, simulated) for s in sessions)
+    low, top, octaves = shake_detector.edge(lowest), 0.5 * lowest, []
+    axes = list(map("xyz".index, letters))
+    while low < top:
+        logs = [_beyond_quiet(sessions, low, min(2.0 * low, top))
+                for sessions in (real, simulated)]
+        if None not in logs:
+            octaves.append([[values[axes] for values in log] for log in logs])
+        low *= 2.0
+    whole = sum(max(own.sum(), 0.0) for (own, *_), _ in octaves)
+    octaves = [pair for pair in octaves if pair[0][0].sum() > shake_detector.LEAST * whole]
+    apart = 0.0
+    for (own, sigma, _), (theirs, their_sigma, noise) in octaves:
+        if not (min(own.min(), theirs.min()) > 0.0
+                and theirs.sum() > ANY * np.linalg.norm(noise)):
+            return False
+        apart += (np.log(own / theirs) ** 2 / ((sigma / own) ** 2 + (their_sigma / theirs) ** 2 + (
+            2.0 * hypotheses.SHAPE) ** 2)).sum()
+    return bool(octaves) and bool(special.chdtrc(len(axes) * len(octaves), apart) > UNLIKE)
 
 
 def _beyond_quiet(sessions, low, high):
