@@ -133,3 +133,39 @@ def test_stamps_that_scatter_alike_in_both_logs_are_of_one_clock(scatter_us, ali
             0.0, scatter_us, len(one.t_us))).astype(np.int64)
     assert motion_match.of_one_clock(*(
         traces.trace_from_capture("one", one) for one in logs)) == alike
+
+
+def short(seed, number, times=1.0, seconds=5.0):
+    """Capture of some seconds of what a hand turns, without a rest; its gyro reads so many times
+    the rate."""
+    rate, force = (x[300:300 + int(seconds * RATE)] for x in handled(seed, 14.0, 0.0))
+    return log(times * rate, force, number)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_two_logs_of_five_seconds_of_one_motion_are_compared(seed):
+    """Below eight seconds none was looked for, "of different motions (correlation of the turn
+    rates 0.00)", and a gyro's scale of 1.1 was no gap."""
+    compared = comparison.compare([("real", short(seed, 1))], "sim", short(seed, 2, 1.1))
+    assert compared.alignment.same and abs(compared.alignment.offset_s) < 0.01
+    found = {(p.sensor, p.name, p.axis): p.difference for p in compared.differs}
+    assert set(found) == {("gyro", "scale", axis) for axis in "xyz"}
+    assert list(found.values()) == pytest.approx([-9.09] * 3, abs=0.5)
+    alike = comparison.compare([("real", short(seed, 1))], "sim", short(seed, 2))
+    assert alike.alignment.same and not alike.differs and not alike.conventions
+
+
+@pytest.mark.parametrize("seconds", [3.0, 5.0, 7.0])
+def test_short_logs_of_other_motions_are_of_none(seconds):
+    """What is slow has few independent values, which match at one of many lags by chance."""
+    for seed in range(20):
+        assert not aligned(short(seed, 1, seconds=seconds), short(
+            seed + 50, 2, seconds=seconds)).same
+
+
+def test_what_is_too_short_to_tell_is_said_to_be():
+    compared = comparison.compare([("real", short(1, 1, seconds=1.5))], "sim", short(
+        1, 2, seconds=1.5))
+    assert not compared.alignment.same
+    assert any("too short to show whether they are of one motion" in x for x in compared.remarks)
+    assert not any("different motions" in x for x in compared.remarks)

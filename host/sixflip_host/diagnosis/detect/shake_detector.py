@@ -87,7 +87,7 @@ def shaken(sessions):
     for session in sessions:
         m = max(8, int(WINDOW_S * session.rate))
         # Of a window's values so many are independent, as of all frequencies so many are faster.
-        fewest = min(fewest, m * (1.0 - _edge(session.rate) / (0.5 * session.rate)))
+        fewest = min(fewest, m * (1.0 - edge(session.rate) / (0.5 * session.rate)))
         x = session.capture.accel.astype(float) * (1000.0 / session.capture.meta[
             "accel_lsb_per_g"])
         k = len(x) // m
@@ -112,10 +112,7 @@ def shaken(sessions):
     value, interval, score, power = {}, {}, 0.0, []
     for i in axes:
         ranked = np.sort(level[:, i])
-        # Ranks of the 90 % interval of a median [Conover, Practical Nonparametric Statistics].
-        off = 0.5 * 1.645 * np.sqrt(len(ranked))
-        ends = ranked[[int(max(0.5 * len(ranked) - off, 0)),
-                       int(min(0.5 * len(ranked) + off, len(ranked) - 1))]]
+        ends = ranked[list(ends_of_median(len(ranked)))]
         value["xyz"[i]] = float(_amplitude(usual[i], quiet[i]))
         interval["xyz"[i]] = tuple(float(_amplitude(end, quiet[i])) for end in ends)
         # Half of the windows above a level that QUIET of them are below, if they were alike.
@@ -129,7 +126,14 @@ def shaken(sessions):
                     "it is shaken most of the time", interval, share=float(steadily / all_of_it))]
 
 
-def _edge(rate):
+def ends_of_median(number):
+    """Ranks of the 90 % interval of a median of so many [Conover, Practical Nonparametric
+    Statistics]."""
+    off = 0.5 * 1.645 * np.sqrt(number)
+    return int(max(0.5 * number - off, 0)), int(min(0.5 * number + off, number - 1))
+
+
+def edge(rate):
     """Hz from which on what is faster than motion is looked at."""
     return min(spectral_lines.MOTION_HZ, HIGHEST * rate / 2.0)
 
@@ -138,7 +142,7 @@ def _fast(x, rate):
     """(n, 3) what of readings (n, 3) is faster than motion."""
     from scipy import signal  # it takes a second to import
     return signal.sosfiltfilt(signal.cheby2(
-        ORDER, STOPPED_DB, _edge(rate), "highpass", fs=rate, output="sos"), x, axis=0)
+        ORDER, STOPPED_DB, edge(rate), "highpass", fs=rate, output="sos"), x, axis=0)
 
 
 def _amplitude(level, quiet):

@@ -51,8 +51,7 @@ class Simulator:
             apart = [(_size(finding, k), _size(other, k)) for k in keys]
             if all(abs(a - b) <= APART * np.hypot(sa, sb) for (a, sa), (b, sb) in apart):
                 return False
-        return not self.shakes_alike(sessions, finding.sensor,
-                                     {line.letter: line.hz for line in finding.lines})
+        return not shaken_alike.found_alike(finding, sessions, self.diagnosis.sessions)
 
     def shakes_alike(self, sessions, sensor, shaken):
         """Whether its log has the power of the real Sessions where that is shaken at rest, {axis
@@ -82,8 +81,7 @@ class Simulator:
         real = {(f.effect, f.sensor) for f in findings}
         return [f for f in self.diagnosis.findings if (f.effect, f.sensor) not in real
                 and (in_motion or f.domain != "motion")
-                and not shaken_alike.alike(self.diagnosis.sessions, sessions, f.sensor,
-                                           {line.letter: line.hz for line in f.lines})]
+                and not shaken_alike.found_alike(f, self.diagnosis.sessions, sessions)]
 
 
 def _size(finding, key):

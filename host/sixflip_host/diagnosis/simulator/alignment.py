@@ -29,6 +29,7 @@ MOST_ROWS = 3.0  # periods between two rows, from which on some are missing or c
 FADED = 2.0  # periods of the band's end in which what lies beyond the ends has faded to 1e-4
 KNOWN = 0.25  # of a log, that is neither missing nor cut off: less says little of its clock
 LEAST_S = 8.0  # of a log: its turn rate has a hundred independent values in BAND_HZ
+SHORTEST_S = 2.0  # of a log, two dozen values, that another is looked for at all
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,7 @@ def align(real, sim):
 def _by_turns_or_forces(real, sim):
     """The Alignment of two Traces with times that are known."""
     none = Alignment(False, 0.0, 0.0, np.inf, 0.0, np.inf, 0.0)
-    if min(real.seconds, sim.seconds) < LEAST_S:
+    if min(real.seconds, sim.seconds) < SHORTEST_S:
         return none
     changes = [np.zeros(1, bool) if x.rate is None else np.ptp(x.rate, axis=0) > 0.0
                for x in (real, sim)]
@@ -175,7 +176,7 @@ def refined(a, b, offset, drift):
         inside = (t >= 0.0) & (t <= a[0][-1])
         together = inside.sum() / GRID_HZ
         inside = known_where(a, b, t, inside)
-        if inside.sum() < LEAST_S * GRID_HZ:
+        if inside.sum() < SHORTEST_S * GRID_HZ:
             return Alignment(False, 0.0, offset, np.inf, drift, np.inf, together)
         x = np.interp(t[inside], a[0], a[1])
         slope = np.interp(t[inside], a[0], np.gradient(a[1], a[0]))
@@ -190,8 +191,17 @@ def refined(a, b, offset, drift):
     if not min(x.std(), y.std()) > 0.0:  # where they overlap one of them does not move
         return Alignment(False, 0.0, 0.0, np.inf, 0.0, np.inf, together)
     correlation = float(np.corrcoef(x, y)[0, 1])
-    return Alignment(correlation >= ALIKE, correlation, float(offset), float(sigma[0]),
+    return Alignment(correlation >= _alike_of(y), correlation, float(offset), float(sigma[0]),
                      float(drift), float(sigma[1]), together)
+
+
+def _alike_of(course):
+    """Correlation with a course on the grid, shorter than LEAST_S, that is as far from none as
+    ALIKE is in that time: Fisher's atanh of one of n independent values has the standard deviation
+    1 / sqrt(n - 3) [Metron 1 (1921) 3]."""
+    number, enough = len(course) / independent(course) - 3.0, 2.0 * BAND_HZ * LEAST_S - 3.0
+    return ALIKE if len(course) >= LEAST_S * GRID_HZ else float(np.tanh(
+        np.arctanh(ALIKE) * np.sqrt(enough / max(number, 1.0))))
 
 
 def known_where(a, b, t, inside):

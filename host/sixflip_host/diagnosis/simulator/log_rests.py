@@ -2,9 +2,10 @@
 and what a log that never rests says its sensor went through, and its noise.
 
 Of that the gyro carries the attitude, and the vertical is where the specific force lies over some
-twenty seconds, in the frame that it carries: what moves a thing averages out, since it does not go
-ever faster [Mahony et al., IEEE Trans. Autom. Control 53 (2008), 1203, whose filter this is
-without its delay: past and future alike]. The noise is that of the quick end of the spectrum.
+twenty seconds, or as many as a shorter log has, in the frame that it carries: what moves a thing
+averages out, since it does not go ever faster [Mahony et al., IEEE Trans. Autom. Control 53
+(2008), 1203, whose filter this is without its delay: past and future alike]. The noise is that of
+the quick end of the spectrum.
 """
 import numpy as np
 
@@ -35,9 +36,9 @@ MOST_SPANS = 1000  # of which the gyro's level is told: each is held against eac
 COUNT_VARIANCE = 0.25  # counts: a channel that toggles between two of them
 UP = np.array([0.0, 0.0, 1.0])  # of the world
 # Hz below which the force is the vertical's; the first ones are for a bias of a gyro that turns
-# the frame by more than a radian in the period of the last (20 deg/s, ITG-3205 PS).
+# the frame by more than a radian in the period of the last (20 deg/s, ITG-3205 PS). A log that
+# is shorter than that has its own length for it.
 BANDS, BIAS = (0.4, 0.1, 0.05), np.radians(20.0)
-SHORTEST_S = 10.0  # of a log, over all of which the mean is taken where that is less than 20 s
 # Of gravity, by which what moves a thing is still there in such a mean: 2 m/s of change in 20 s
 # are a hundredth, a drone that leans into a curve has some hundredths.
 STRAYS = 0.03
@@ -152,11 +153,11 @@ def calm(capture, rate_hz):
 def levelled(t, force, rate, rate_hz, g):
     """(turn (n, 3, 3) body to world, bias (3,) rad/s that is known but about the vertical, speed
     (n, 3) m/s in the body), or None where nothing shows the vertical; force, rate (n, 3)."""
-    if len(t) < 2 or t[-1] - t[0] < SHORTEST_S:
+    if len(t) < 2 or (t[-1] - t[0]) * BANDS[0] < 1.0:
         return None
     slowest = max(BANDS[-1], 1.0 / (t[-1] - t[0]))
     bias = np.zeros(3)
-    for band in (*BANDS[:-1], slowest):
+    for band in [*(band for band in BANDS if band > slowest), slowest]:
         course = _carried(t, rate - bias)
         bias = bias + _bias(t, course, _vertical(force, course, rate_hz, band)[0], band)
     course = _carried(t, rate - bias)

@@ -132,7 +132,9 @@ def said_of(real, sim, aligned):
         "%.0f s together" % (*logs, aligned.offset_s, 1.645 * aligned.offset_sigma_s,
                              aligned.overlap_s) if aligned.same else
         "%s and %s are of different motions (correlation of the %s %.2f): each was held "
-        "against its own rests and moves" % logs if aligned.moving else
+        "against its own rests and moves" % logs if aligned.moving and aligned.overlap_s else
+        "%s and %s are together for too short to show whether they are of one motion: each was "
+        "held against its own rests and moves" % logs[:2] if aligned.moving else
         "neither %s nor %s turns more than its noise, and both rest nearly all the time: there is "
         "no motion to be compared, each was held against its own rests" % logs[:2]]
     for trace in (real, sim):
