@@ -178,14 +178,33 @@ def test_bad_sections(tmp_path, capsys, content):
     assert code == 4
 
 
+def step_of(values):
+    sizes = units.Sizes()
+    sizes.add(values)
+    return sizes.step()
+
+
 @pytest.mark.parametrize("step", [0.00479, 1 / 16384, 0.061, 3.9])
 def test_finds_the_step_of_values(step):
     counts = np.random.default_rng(1).integers(-2000, 2000, (500, 3))
-    assert units.find_step(counts * step) == pytest.approx(step, rel=1e-6)
+    assert step_of(counts * step) == pytest.approx(step, rel=1e-6)
+
+
+@pytest.mark.parametrize("most", [90, 9000])
+def test_finds_the_step_of_values_that_single_precision_was_calculated_in(most):
+    """A flight controller's: no two of one count were alike, and there was no step."""
+    rng, step = np.random.default_rng(1), np.float32(np.radians(500.0 / 32768.0))
+    single = rng.integers(-most, most, (2000, 3)).astype(np.float32) * step
+    seconds = rng.uniform(0.003, 0.005, (2000, 1)).astype(np.float32)
+    single = (single * seconds + np.float32(0.01)) / seconds - np.float32(0.01) / seconds
+    assert len(np.unique(single)) > len(np.unique(np.rint(single / step)))
+    assert step_of(single.astype(float)) == pytest.approx(float(step), rel=1e-4)
 
 
 def test_noise_has_no_step():
-    assert units.find_step(np.random.default_rng(1).normal(size=(500, 3))) is None
+    noise = np.random.default_rng(1).normal(size=(500, 3))
+    assert step_of(noise) is None
+    assert step_of((0.03 * noise + [0.0, 0.0, 9.8]).astype(np.float32).astype(float)) is None
 
 
 @pytest.mark.parametrize("value, words, line", [

@@ -127,4 +127,5 @@ def test_what_was_found_alike_is_said_of_different_motions():
     found = diagnose.diagnose([("real", real)], simulator=[("simulator", sim)])
     assert found.verdict == "cannot tell"
     assert next_capture.untold(found)["why"].startswith(
-        "bias, misalignment, noise density, scale are alike in both, but the two logs are of")
+        "bias, fast noise, misalignment, noise density, scale are alike in both, but the two logs "
+        "are of")

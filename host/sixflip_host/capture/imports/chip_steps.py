@@ -61,17 +61,17 @@ class Sizes(units.Sizes):
         gaps = np.concatenate([np.diff(axis) for axis in axes] or [np.zeros(0)])
         if len(gaps) < FEWEST_ON_GRID or max(map(len, axes)) > MOST_CODES:
             return None
-        step = float(gaps.min())
-        for near in (8, 50, 1000, math.inf):
-            number = np.rint(gaps / step)
-            few = number <= near
-            step = float((gaps[few] * number[few]).sum() / (number[few] ** 2).sum())
-        offsets, off = [], 0.0
-        for axis in axes:
-            offsets.append(float(np.median(axis - np.rint((axis - axis[0]) / step) * step)))
-            whole = (axis - offsets[-1]) / step
-            off = max(off, float(np.abs(whole - np.rint(whole)).max()))
-        return (step, np.array(offsets)) if off < units.ON_GRID else None
+        for step in units.least_gaps(gaps, max(float(np.abs(axis).max()) for axis in axes)):
+            for near in (8, 50, 1000, math.inf):
+                number = np.rint(gaps / step)
+                few = number <= near
+                step = float((gaps[few] * number[few]).sum() / (number[few] ** 2).sum())
+            offsets = [float(np.median(axis - np.rint((axis - axis[0]) / step) * step))
+                       for axis in axes]
+            whole = [(axis - offset) / step for axis, offset in zip(axes, offsets)]
+            if max(float(np.abs(x - np.rint(x)).max()) for x in whole) < units.ON_GRID:
+                return step, np.array(offsets)
+        return None
 
 
 def counts_of(sensor, path, what, values, unit, lsb, per_unit, sizes):

@@ -18,6 +18,7 @@ GYRO_UNITS = {"counts": None, "si": 180 / math.pi, "rad/s": 180 / math.pi, "dps"
 LARGEST = 1e9           # in any unit: no sensor, and squares of more leave a float
 MOST_DISTINCT = 1 << 17 # sizes of values in whole steps: 16 bits have a quarter of that
 MOST_ROUNDED = 40       # sizes of whole numbers that may be rounded ones: counts at rest have less
+ROUNDED = 1e-5, 1e-9    # of the largest value: gaps that are less, of singles, of doubles
 ON_GRID = 0.02          # of a step: how far values may lie off whole steps to be called counts
 FEWEST_PRINTED, COARSER = 20, 3.0   # sizes; last decimals of a step: a third lie on it by chance
 ROOM = 32000            # counts that the largest of float values gets; the rest is headroom
@@ -26,15 +27,6 @@ AT_A_TIME = 1 << 16     # rows; the first of them are new values
 # Rows in which a value that stays has one count: more than any log has that is read faster than
 # its sensor (32 in detect/held_values.py), few enough for the mean of a rest.
 HELD_ROWS = 64
-
-
-def find_step(values):
-    """The step every value (float, of any shape) is a whole multiple of, or None when there is no
-    such step. The smallest difference between two values is the first guess; least squares over
-    all values refines it."""
-    sizes = Sizes()
-    sizes.add(values)
-    return sizes.step()
 
 
 class Sizes:
@@ -57,14 +49,22 @@ class Sizes:
         return self._distinct is None or len(self._distinct) > MOST_ROUNDED
 
     def step(self):
-        """What all of them are whole multiples of, or None."""
+        """What all are whole multiples of, or None; the smallest gap is the first guess."""
         distinct = np.zeros(0) if self._distinct is None else self._distinct
         gaps = np.diff(np.concatenate(([0.0], distinct)))
-        gaps = gaps[gaps > 1e-9 * max(distinct.max(initial=0.0), 1e-300)]
-        if not len(gaps):
-            return None
-        step, off = _fitted(distinct, float(gaps.min()), (8, 50, 1000, np.inf))
-        return step if off < ON_GRID else _as_printed(distinct, gaps)
+        largest = max(distinct.max(initial=0.0), 1e-300)
+        for least in least_gaps(gaps, largest):
+            step, off = _fitted(distinct, least, (8, 50, 1000, np.inf))
+            levels = len(np.unique(np.rint(distinct / step)))
+            if off < ON_GRID and levels >= min(len(distinct), FEWEST_PRINTED):
+                return step
+        return _as_printed(distinct, gaps[gaps > ROUNDED[1] * largest])
+
+
+def least_gaps(gaps, largest):
+    """[size] of the least gaps that are no rounding of singles, or of doubles, so large."""
+    return [float(gaps[gaps > part * largest].min()) for part in ROUNDED
+            if (gaps > part * largest).any()]
 
 
 def _fitted(distinct, step, nears):
