@@ -205,7 +205,9 @@ def passages(x):
     sign = np.sign(x[first])
     before, after = (x[last] - x[last - 1]) * sign, (x[first + 1] - x[first]) * sign
     fast = np.minimum(before, after) > FASTER * noise
-    rate = 0.5 * (before + after)[fast]
+    # What swings through 0 is as fast on both sides, and of what settles towards something, as
+    # behind a low-pass, each step is the same part of the one before: a mean of factors.
+    rate = np.sqrt((before * after)[fast])
     came = (first - last)[fast] * rate - (np.abs(x[last]) + np.abs(x[first]))[fast]
     # The larger a step is by its noise, the likelier it is the one that goes through 0: by the
     # variance of the difference of two samples over the rate.
