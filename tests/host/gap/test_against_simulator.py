@@ -7,7 +7,7 @@ import pytest
 from sixflip_host.diagnosis.simulator import against_simulator
 
 
-def finding(value, half=None, effect="vibration", sensor="accel", domain="frequency"):
+def finding(value, half=None, effect="quantisation", sensor="accel", domain="samples"):
     interval = None if half is None else {k: (v - half, v + half) for k, v in value.items()}
     return SimpleNamespace(effect=effect, sensor=sensor, value=value, interval=interval,
                            domain=domain, lines=())
@@ -31,11 +31,11 @@ def test_two_sizes_are_equal_as_far_as_their_intervals_say(value, half, new):
 def test_another_sensor_or_effect_is_another_finding():
     own = simulator(finding({"x": 10.0}, 1.0))
     assert own.new(finding({"x": 10.0}, 1.0, sensor="gyro"), ())
-    assert own.new(finding({"x": 10.0}, 1.0, effect="quantisation"), ())
+    assert own.new(finding({"x": 10.0}, 1.0, effect="dead_zone"), ())
 
 
 def test_what_only_the_simulator_has_is_passed_on():
-    line, step = finding({"x": 10.0}), finding({"x": 4.0}, effect="quantisation")
+    line, step = finding({"x": 10.0}), finding({"x": 4.0}, effect="dead_zone")
     assert simulator(line, step).only_simulated([finding({"x": 9.0})], ()) == [step]
 
 
