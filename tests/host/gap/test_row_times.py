@@ -6,7 +6,7 @@ import pytest
 
 from sixflip_host.capture import clock
 from sixflip_host.capture.capture import Capture
-from sixflip_host.diagnosis.simulator import alignment, comparison, own_motion, row_times, traces
+from sixflip_host.diagnosis.simulator import alignment, comparison, row_times, timing, traces
 from tests.worlds.tumbled import META, RATE_HZ, read, tumbled
 
 
@@ -73,7 +73,7 @@ def test_what_holds_rows_up_now_longer_and_now_shorter_is_no_other_clock():
     stretches = np.repeat(rng.standard_normal(12) * 0.03, n // 12) / (n // 12)
     real, simulated = stamped(late_by(n) + np.cumsum(stretches), False)
     traced = [traces.trace_from_capture(*x) for x in (("real", real), ("sim", simulated))]
-    told = own_motion.timing(None, None, {}, alignment.align(*traced))[-1]
+    told = timing.compared(None, None, {}, alignment.align(*traced))[-1]
     assert told.name == "clock" and not told.differs
 
 

@@ -18,6 +18,7 @@ from sixflip_host.diagnosis.simulator import (
     pairing,
     parameters,
     simulator_answer,
+    timing,
     traces,
 )
 from sixflip_host.experiment import projection
@@ -189,10 +190,12 @@ def test_a_density_for_a_samples_noise_is_one_number_in_both_sensors(axes, both,
 def test_what_has_no_field_to_set_has_words_to_copy():
     """A pole of 20 Hz is half of 63 ms² of smoothness; what does not differ says nothing."""
     tau = 1.0 / (2.0 * np.pi * 20.0)
-    fits = {"gyro": SimpleNamespace(conventions=(), smoothing_earns=0.0, fit=SimpleNamespace(
-        smooth_s2=-0.5 * tau ** 2, smooth_sigma_s2=1e-8))}
-    said = {p.name: p.how for p in own_motion.timing(-0.04, 1e-4, fits, SimpleNamespace(
-        same=True, drift=0.0, drift_sigma=1e-5))}
+    fits = {"gyro": SimpleNamespace(conventions=(), smoothing_earns=0.0, low_pass=None,
+                                    fit=SimpleNamespace(smooth_s2=-0.5 * tau ** 2,
+                                                        smooth_sigma_s2=1e-8))}
+    said = {p.name: p.how for p in timing.compared(
+        -0.04, 1e-4, timing.smoothness(fits, {"gyro": 0.0}),
+        SimpleNamespace(same=True, drift=0.0, drift_sigma=1e-5))}
     assert said == {"delay": "output the gyro 40 ms later", "clock": "",
                     "smoothness": "put a low-pass of first order at 20 Hz (time constant 7.96 ms) "
                                   "behind it"}
@@ -201,15 +204,15 @@ def test_what_has_no_field_to_set_has_words_to_copy():
 @pytest.mark.parametrize("earned, differs", [(0.0, True), (60.0, True), (99.0, False)])
 def test_what_noise_alone_earns_is_no_smoothness(earned, differs):
     """A rover's simulator was "smoother than the sensor", whose force was noise beyond 2 Hz."""
-    fits = {"accel": SimpleNamespace(conventions=(), smoothing_earns=earned, fit=SimpleNamespace(
-        smooth_s2=5e-4, smooth_sigma_s2=5e-5))}
-    smoothness, = own_motion.timing(None, None, fits, SimpleNamespace(same=False))
-    assert smoothness.differs == differs
+    fits = {"accel": SimpleNamespace(conventions=(), smoothing_earns=earned, low_pass=None,
+                                     fit=SimpleNamespace(smooth_s2=5e-4, smooth_sigma_s2=5e-5))}
+    smoothness = timing.smoothness(fits, {"accel": 0.0})["accel"]
+    assert smoothness.told.differs == differs and (smoothness.low_pass is not None) == differs
 
 
 @pytest.mark.parametrize("drift, differs", [(8e-5, False), (-8e-5, False), (3e-4, True)])
 def test_two_quartzes_that_differ_as_quartzes_do_are_no_gap(drift, differs):
-    clock, = own_motion.timing(None, None, {}, SimpleNamespace(
+    clock, = timing.compared(None, None, {}, SimpleNamespace(
         same=True, drift=drift, drift_sigma=1e-6))
     assert clock.name == "clock" and clock.differs == differs
 

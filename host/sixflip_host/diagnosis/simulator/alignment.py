@@ -129,8 +129,9 @@ def _on_grid(trace, size):
     return t, smooth(np.interp(t, trace.t, size), GRID_HZ), *near
 
 
-def smooth(x, rate_hz, band_hz=BAND_HZ):
+def smooth(x, rate_hz, band_hz=BAND_HZ, low_pass=None):
     """x (n,) or (n, k) without what is faster than the band, by 1 / (1 + (f / band)^4); no delay.
+    And behind a low_pass.LowPass, where one is to be.
     The same at any rate: a recursive filter's slope depends on it, and of two logs of different
     rates one would be the smoother."""
     band = min(band_hz, 0.4 * rate_hz)
@@ -139,7 +140,10 @@ def smooth(x, rate_hz, band_hz=BAND_HZ):
     beyond = min(len(x) - 1, int(rate_hz * max(1.0, FADED / band)))
     longer = np.concatenate([2.0 * x[:1] - x[beyond:0:-1], x, 2.0 * x[-1:] - x[-2:-beyond - 2:-1]])
     number = fft.next_fast_len(len(longer), real=True)
-    gain = 1.0 / (1.0 + (fft.rfftfreq(number, 1.0 / rate_hz) / band) ** 4)
+    hz = fft.rfftfreq(number, 1.0 / rate_hz)
+    gain = 1.0 / (1.0 + (hz / band) ** 4)
+    if low_pass is not None:
+        gain = gain * low_pass.response(hz)
     spectrum = fft.rfft(longer, number, axis=0)
     slow = fft.irfft((spectrum.T * gain).T, number, axis=0)
     return slow[beyond:beyond + len(x)]

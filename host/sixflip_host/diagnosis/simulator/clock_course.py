@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import odds
-from . import alignment, own_motion, row_times
+from . import alignment, row_times, timing
 from .lag_path import (
     BLURRED_S,
     FINE_S,
@@ -199,7 +199,7 @@ def _wander(line):
         return np.zeros(0)
     knots = np.arange(len(line.wander))
     wander = line.wander - np.polyval(np.polyfit(knots, line.wander, 1), knots)
-    return wander if 1e3 * wander.std() > own_motion.LEAST_DELAY_MS else np.zeros(0)
+    return wander if 1e3 * wander.std() > timing.LEAST_DELAY_MS else np.zeros(0)
 
 
 def _told(name, unit, value, how):

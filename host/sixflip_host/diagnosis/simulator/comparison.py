@@ -23,6 +23,7 @@ from . import (
     shaking,
     simulator_answer,
     single_log,
+    timing,
     traces,
     turned_in_box,
 )
@@ -215,10 +216,11 @@ def _of_range_and_time(logs, together, numbers, findings):
     more = [p for p in one_motion.ranges(together.stops, real, sim)
             if (p.sensor, p.axis) not in cut]
     if len(fits) == 2 and not findings:
-        more += shaking.shaking(real, dead_zone.taken_off(sim, together.bands), logs.aligned)
-    return more + own_motion.slope(fits) + own_motion.timing(
-        together.late, together.late_sigma, fits, logs.aligned,
-        {kind: logs.smoothing_s2(kind) for kind in fits})
+        more += shaking.shaking(
+            real, dead_zone.taken_off(sim, together.bands), logs.aligned,
+            {kind: x.low_pass for kind, x in together.smoothed.items() if x.low_pass})
+    return more + timing.slope(fits) + timing.compared(
+        together.late, together.late_sigma, together.smoothed, logs.aligned)
 
 
 def numbers_of(real, sim, mended, own, fits, findings):

@@ -46,7 +46,8 @@ ALIKE_S2, SMOOTHER = 1e-9, 4.0
 class SensorFit:
     """One sensor of the simulator as the best hypothesis has it: conventions, fit
     (evidence_of_logs.Fit), inflation, the Pair it was made on, the Hypothesis, the real sensor's
-    own effects, the channels that change and how fast the noise is (evidence_of_logs.bends)."""
+    own effects, the channels that change, how fast the noise is (evidence_of_logs.bends) and the
+    LowPass that the other log of the Pair is behind, or None; as_read: the Pair without that."""
 
     kind: str
     conventions: tuple
@@ -57,6 +58,8 @@ class SensorFit:
     own: tuple
     live: np.ndarray
     noise_bends: tuple
+    low_pass: object
+    as_read: object
 
     def refitted(self, rows, left=True):
         """The Fit of the same hypothesis with other noise of each sample, rows (n,); left: with
@@ -73,13 +76,14 @@ class SensorFit:
         return float(len(self.pair.t) / self.inflation * self.live.sum() * -np.log(weaker))
 
 
-def same_motion(real, sim, alignment, motion, live, fresh_hz, own_real):
+def same_motion(real, sim, alignment, motion, live, fresh_hz, behind, own_real):
     """{sensor: SensorFit} of two aligned Traces; own_real: the real one's OwnSensor; live
-    {sensor: (3,)}: channels that change."""
+    {sensor: (3,)}: channels that change; behind {sensor: LowPass}: what one of the logs has of the
+    two (low_pass.between)."""
     sensor_fits, swapped, said = {}, None, ()
     for kind in ("accel", "gyro"):
         if live[kind].any():
-            rest = motion, live[kind], fresh_hz[kind], own_real, swapped, said
+            rest = (motion, live[kind], fresh_hz[kind], behind.get(kind), own_real, swapped, said)
             sensor_fits[kind] = motion_match.in_step(
                 lambda aligned, kind=kind, rest=rest: one_sensor(kind, real, sim, aligned, *rest),
                 kind, real, sim, alignment)
@@ -89,7 +93,7 @@ def same_motion(real, sim, alignment, motion, live, fresh_hz, own_real):
     return sensor_fits
 
 
-def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, own_real, *other):
+def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, behind, own_real, *other):
     """SensorFit of one sensor; other: what is known of the other one, see prior()."""
     swapped = other[0] if other else None
     noise, theirs = (log.noise[kind] for log in (real, sim))
@@ -116,14 +120,15 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, own_real, *ot
                 "healthy", values, *hypotheses.none(len(values)), shared=True))
         return pair, measured, tried, evidence_of_logs.bends(left, pairing.GRID_HZ)
 
-    pair, measured, tried, noise_bends = asked(pairing.paired(real, sim, alignment, motion))
+    logs = real, sim, alignment, motion
+    pair, measured, tried, noise_bends = asked(pairing.paired(*logs, low_pass=behind))
     nameless = tried[-1]
     band = min(fresh_hz / HELD_BAND, pairing.coherent_band(
         measured, np.concatenate([nameless.signal, nameless.free], 1)))
     if band < pair.band_hz:
-        pair, measured, tried, noise_bends = asked(
-            pairing.paired(real, sim, alignment, motion, band))
+        pair, measured, tried, noise_bends = asked(pairing.paired(*logs, band, behind))
 
+    as_read = pair if behind is None else pairing.paired(*logs, pair.band_hz)
     own = effects = hypotheses.own_effects(
         kind, pair.t, pair.celsius, pair.force, pair.motion.rate, real.g)
 
@@ -151,7 +156,7 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, own_real, *ot
 
     def kept(named, fit):
         return without_smoothing(SensorFit(kind, named, fit, inflation, pair, fit.hypothesis, own,
-                                           live, noise_bends), rows)
+                                           live, noise_bends, behind, as_read), rows)
 
     def best_of(fits):
         return kept(*posterior(kind, fits, live, in_full, *other))

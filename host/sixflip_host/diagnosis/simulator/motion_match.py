@@ -152,10 +152,22 @@ def _white(trace, values, number, band_hz):
     return np.einsum("fij,fj->fi", ways, white) * inside[:, None]
 
 
-def moved_on(real, sim, start):
+def paced(real, sim, alignment, behind):
+    """The Alignment with the drift that the logs have behind their low-passes, {sensor: LowPass}:
+    how fast a thing turns in all is bent by one, and a clock seems to drift."""
+    low_pass = behind.get("gyro" if alignment.by == "turn rates" else "accel")
+    own = alignment if low_pass is None else moved_on(real, sim, alignment, low_pass)
+    if not own.same:
+        return alignment
+    middle = 0.5 * sim.seconds
+    return replace(alignment, drift=own.drift, drift_sigma=own.drift_sigma, offset_s=float(
+        alignment.of_simulator(middle) - (1.0 + own.drift) * middle))
+
+
+def moved_on(real, sim, start, low_pass=None):
     """The Alignment at which a linear map of how what the real Trace reads changes foretells most
     of how the simulator's does, by Gauss-Newton from one that is near: the course of gravity is
-    alike for seconds, the change of it is not."""
+    alike for seconds, the change of it is not. Behind a low_pass.LowPass, where one has it."""
     name = "rate" if start.by == "turn rates" else "force"
     none, at = replace(start, same=False, offset_sigma_s=np.inf), start
     if getattr(real, name) is None or getattr(sim, name) is None:
@@ -168,8 +180,10 @@ def moved_on(real, sim, start):
         t = t[inside]
         if len(t) < align_by.LEAST_S * pairing.GRID_HZ:
             return none
-        x, y = (pairing.at_times(log, getattr(log, name), own, pairing.BANDS[2]) for log, own in (
-            (real, there[inside]), (sim, t)))
+        x, y = (pairing.at_times(
+            log, getattr(log, name), own, pairing.BANDS[2],
+            low_pass=low_pass and low_pass.on(which)) for which, log, own in (
+                ("real", real, there[inside]), ("sim", sim, t)))
         share, change = _foretold(x, y)[1], np.gradient(x, axis=0)
         left, _, turn = _foretold(change, np.gradient(y, axis=0))
         pull = (np.gradient(change, axis=0) * pairing.GRID_HZ) @ turn

@@ -17,12 +17,14 @@ from . import (
     dead_zone,
     held_readings,
     hypotheses,
+    low_pass,
     motion_match,
     own_calibration,
     own_motion,
     pairing,
     parameters,
     single_log,
+    timing,
     traces,
 )
 from .evidence_of_logs import shifted
@@ -47,8 +49,8 @@ class Logs:
     say nothing new; holds {"real" or "sim": {sensor: held_readings.Hold}}; aligned
     (alignment.Alignment); live {sensor: (3,) bool} of the simulator's channels that answer;
     constant: [Convention] of those that do not; own_real (own_calibration.OwnSensor or None);
-    motion (traces.Motion) of the real one where it is that of both, None otherwise; unseen:
-    sentences."""
+    motion (traces.Motion) of the real one where it is that of both, None otherwise; behind
+    {sensor: low_pass.LowPass} that one of them has; unseen: sentences."""
 
     real: traces.Trace
     sim: traces.Trace
@@ -60,6 +62,7 @@ class Logs:
     constant: list
     own_real: own_calibration.OwnSensor
     motion: traces.Motion
+    behind: dict
     unseen: tuple
 
     @property
@@ -78,7 +81,8 @@ class Logs:
 class OneMotion:
     """fits {sensor: conventions.SensorFit}, with the simulator as its bands have it; unmended: the
     same without; stops (stops_of); bands (dead_zone.Band, ...); of_gyro: nats by which it is the
-    gyro that has them; late, late_sigma: s of the simulator's gyro, or None; conventions:
+    gyro that has them; late, late_sigma: s of the simulator's gyro, or None; smoothed
+    {sensor: timing.Smoothness}; conventions:
     [Convention] that the pair shows."""
 
     fits: dict
@@ -88,10 +92,11 @@ class OneMotion:
     of_gyro: float
     late: float
     late_sigma: float
+    smoothed: dict
     conventions: list
 
 
-NOTHING = OneMotion({}, {}, {}, (), 0.0, None, None, [])
+NOTHING = OneMotion({}, {}, {}, (), 0.0, None, None, {}, [])
 
 
 def logs_of(real, sim, aligned):
@@ -114,8 +119,15 @@ def logs_of(real, sim, aligned):
     if motion is not None:
         same = motion_match.one_motion(real_free, sim_free, aligned, motion, live)
         aligned, motion = replace(aligned, same=same), motion if same else None
+    behind = {}
+    if motion is not None:
+        logs = real_free, sim_free
+        behind = low_pass.between(*logs, aligned, motion, live)
+        if behind:
+            aligned = motion_match.paced(*logs, aligned, behind)
+            behind = low_pass.between(*logs, aligned, motion, live)
     return Logs(real, sim, real_free, sim_free, holds, aligned, live, constant, own_real, motion,
-                unseen)
+                behind, unseen)
 
 
 def beside(logs):
@@ -124,7 +136,7 @@ def beside(logs):
 
     def fitted(real, sim):
         return conventions.same_motion(real, sim, logs.aligned, logs.motion, logs.live, fresh,
-                                       logs.own_real)
+                                       logs.behind, logs.own_real)
     real, sim = logs.real_free, logs.sim_free
     fits = fitted(real, sim)
     stops = stops_of(fits)
@@ -137,12 +149,13 @@ def beside(logs):
         fits = fitted(real, dead_zone.taken_off(sim, bands))
         of_gyro = nats_of_gyro(
             replace(real, force=logs.own_real.applied(real).force), sim, logs.aligned, fits)
-    late, late_sigma, delays = own_motion.delay(fits, logs.row_s)
+    smoothed = timing.smoothness(fits, {kind: logs.smoothing_s2(kind) for kind in fits})
+    late, late_sigma, delays = timing.delay(fits, logs.row_s, smoothed)
     shown = [c for f in fits.values() for c in f.conventions if not (
         logs.constant and c.name == "constant_channel")]
     shown += [held_readings.beside(c, sim.rate_hz, logs.holds["sim"]) for c in delays
               if own_motion.shown_late(sim, late)]
-    return OneMotion(fits, unmended, stops, bands, of_gyro, late, late_sigma, shown)
+    return OneMotion(fits, unmended, stops, bands, of_gyro, late, late_sigma, smoothed, shown)
 
 
 def stops_of(fits):

@@ -52,9 +52,9 @@ class Pair:
         return self.sim_force if kind == "accel" else self.sim_rate
 
 
-def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
+def paired(real, sim, alignment, motion, band_hz=BANDS[0], low_pass=None):
     """Pair of two Traces and the real one's Motion; samples on a rail, and lost ones, are left
-    out."""
+    out. Of a low_pass.LowPass the log that is not behind it is put behind it."""
     t = np.arange(0.0, sim.seconds, 1.0 / GRID_HZ)
     there = alignment.of_simulator(t)
     inside = (there > EDGE_S) & (there < real.seconds - EDGE_S) & (t > EDGE_S) & (
@@ -66,8 +66,11 @@ def paired(real, sim, alignment, motion, band_hz=BANDS[0]):
     # Where the clocks go unlike, the same band of both is another one by each log's own.
     own_hz = band_hz / (1.0 + alignment.drift)
 
+    behind = {log: low_pass and low_pass.on(log) for log in ("real", "sim")}
+
     def onto(trace, values, at, slope=False):
-        return at_times(trace, values, at, own_hz if trace is real else band_hz, slope)
+        return at_times(trace, values, at, own_hz if trace is real else band_hz, slope,
+                        behind["real" if trace is real else "sim"])
 
     # A simulator without a gyro is compared by its forces alone.
     sim_rate = np.zeros_like(sim.force) if sim.rate is None else sim.rate
@@ -136,11 +139,11 @@ def moment(pair):
     return m
 
 
-def at_times(trace, values, at, band_hz, slope=False):
-    """(m, …) of values (n, …), one a row of a Trace, what is slower than the band at times at (m,)
-    s of its clock, or its slope."""
+def at_times(trace, values, at, band_hz, slope=False, low_pass=None):
+    """(m, …) of values (n, …), one a row of a Trace, what is slower than the band, and behind a
+    low_pass.LowPass, at times at (m,) s of its clock, or its slope."""
     t, flat = row_times.on_even_times(trace.t, values.reshape(len(values), -1), trace.rate_hz)
-    course = CubicSpline(*increasing(t, align_by.smooth(flat, trace.rate_hz, band_hz)))
+    course = CubicSpline(*increasing(t, align_by.smooth(flat, trace.rate_hz, band_hz, low_pass)))
     return course(at, int(slope)).reshape((len(at),) + values.shape[1:])
 
 

@@ -83,7 +83,8 @@ def held_out(fits, not_explained, real, sim):
         noise = 0.0 if None in levels else sum(
             (level.density ** 2).mean() * 2.0 * min(pair.band_hz, trace.rate_hz / 2)
             for level, trace in zip(levels, (real, sim)))
-        before = size(kind, pair.simulated(kind) - pair.real(kind))
+        as_read = sensor_fit.as_read
+        before = size(kind, as_read.simulated(kind) - as_read.real(kind))
         # Nothing has to be done that makes it larger: a number that blocks are too short for.
         gaps[kind] = (before, min(before, size(kind, not_explained[kind])),
                       size(kind, np.sqrt(noise)))

@@ -65,9 +65,10 @@ class Levels:
             *(self.error / (self.power + self.floor))))
 
 
-def shaking(real, sim, aligned):
+def shaking(real, sim, aligned, behind=None):
     """[Parameter] of how hard each Trace of one motion shakes, one an axis: in the whole band, or
-    where that does not differ by a line. aligned: the alignment.Alignment of their clocks."""
+    where that does not differ by a line. aligned: the alignment.Alignment of their clocks; behind
+    {sensor: low_pass.LowPass}: that one of them has, which is no other shaking."""
     numbers, top = [], SHOWS * min(real.rate_hz, sim.rate_hz)
     for kind, name in (("accel", "force"), ("gyro", "rate")):
         values = [getattr(x, name) for x in (real, sim)]
@@ -76,10 +77,13 @@ def shaking(real, sim, aligned):
         # What one of them cuts off is left out of both: it is where they are shaken most.
         ends = np.array([[single_log.limit(x) or np.inf for x in v.T] for v in values]).min(axis=0)
         clipped = [(np.abs(v) >= ends).any(axis=1) for v in values]
-        own = [_spectra(log, v, cut, top) for log, v, cut in zip((real, sim), values, clipped)]
+        low_pass = (behind or {}).get(kind)
+        puts = [low_pass and low_pass.on(which) for which in ("real", "sim")]
+        own = [_spectra(log, v, cut, top, put)
+               for log, v, cut, put in zip((real, sim), values, clipped, puts)]
         if any(s is None for s in own):
             continue
-        beside = _spectra(*_on_its_rows(real, sim, aligned, values[1], clipped[1]), top)
+        beside = _spectra(*_on_its_rows(real, sim, aligned, values[1], clipped[1]), top, puts[1])
         for i, axis in enumerate("xyz"):
             levels, where = _of_band(own, i), "between %.0f and %.0f Hz" % (FASTER_HZ, top)
             if not levels.differ(DIFFERS):
@@ -168,10 +172,13 @@ def _on_its_rows(real, sim, aligned, values, cut):
     return real, np.where(outside[:, None], 0.0, spline), bad | outside
 
 
-def _spectra(trace, values, cut, top):
+def _spectra(trace, values, cut, top, low_pass=None):
     """Spectra of values (n, 3) at the rows of a Trace, away from what is cut off (n,), up to a
-    frequency, or None where there is too little of moving or of rest."""
-    made, still, read = pieces(trace, values, cut, np.arange(FEET_HZ, top, 1.0 / PIECE_S))
+    frequency, behind a LowPass or none; None where there is too little of moving or of rest."""
+    hz = np.arange(FEET_HZ, top, 1.0 / PIECE_S)
+    made, still, read = pieces(trace, values, cut, hz)
+    if low_pass is not None:
+        made = made * low_pass.response(hz)[:, None]
     moves, rests = read & ~still.any(axis=1), read & still.all(axis=1)
     if moves.sum() * PIECE_S < FEWEST_S or rests.sum() < FEWEST_RESTS:
         return None
