@@ -79,7 +79,7 @@ class SensorFit:
 def same_motion(real, sim, alignment, motion, live, fresh_hz, behind, own_real):
     """{sensor: SensorFit} of two aligned Traces; own_real: the real one's OwnSensor; live
     {sensor: (3,)}: channels that change; behind {sensor: LowPass}: what one of the logs has of the
-    two (low_pass.between)."""
+    two (transfer.between)."""
     sensor_fits, swapped, said = {}, None, ()
     for kind in ("accel", "gyro"):
         if live[kind].any():
@@ -113,11 +113,11 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, behind, own_r
         density = 0.0 if noise is None else noise.density
         values = pairing.reliable(values, np.maximum(np.sqrt(2.0 * pair.band_hz * share) * density,
                                                      pairing.shaken(left, heard, values)))
-        tried = [replace(h, full_scale=full_scale)
+        tried = [replace(h, full_scale=full_scale, behind=behind)
                  for h in made(values / full_scale, pair.motion, real.g)]
         if full_scale != 1.0:  # it may be that of the simulator's log as well
             tried.insert(0, hypotheses.Hypothesis(
-                "healthy", values, *hypotheses.none(len(values)), shared=True))
+                "healthy", values, *hypotheses.none(len(values)), shared=True, behind=behind))
         return pair, measured, tried, evidence_of_logs.bends(left, pairing.GRID_HZ)
 
     logs = real, sim, alignment, motion
@@ -184,7 +184,8 @@ def without_smoothing(sensor_fit, rows):
     """The SensorFit as smooth as the real log, where it is not shown to be smoother: of a motion
     of one frequency, as a pendulum's, what that takes off by chance a scale puts back."""
     free, sigma = sensor_fit.fit.smooth_s2, sensor_fit.fit.smooth_sigma_s2
-    if (free / sigma) ** 2 - sensor_fit.smoothing_earns > SMOOTHER ** 2:
+    if sensor_fit.low_pass is not None or (
+            free / sigma) ** 2 - sensor_fit.smoothing_earns > SMOOTHER ** 2:
         return sensor_fit
     fixed = replace(sensor_fit, hypothesis=replace(sensor_fit.hypothesis, smooth_sd=ALIKE_S2))
     return replace(fixed, fit=replace(fixed.refitted(rows), smooth_s2=free, smooth_sigma_s2=sigma))

@@ -99,6 +99,8 @@ def fit_one(h, measured, axes, unit, grid_hz, kind, inflation, real_own, live, r
         signal = shifted(h.signal, delay * grid_hz) @ axes.T
         slope = -np.gradient(signal, axis=0) * grid_hz
         bend = -np.gradient(slope, axis=0) * grid_hz
+        if h.behind is not None:
+            bend = h.behind.bend(bend, grid_hz)
         columns = np.concatenate([shifted(turned, delay * grid_hz, every),
                                   slope[some, :, None], bend[some, :, None]], 2)
         mean = np.concatenate([h.mean, [-delay, 0.0]])

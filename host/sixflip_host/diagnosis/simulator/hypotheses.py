@@ -42,8 +42,6 @@ WANDERS_HZ = (0.05, 0.1, 0.2, 0.4, 0.8, 1.6)
 KNOTS = 8  # of the bent line of an axis: four a side, a front end that levels off has one or two
 BENT = 0.03  # of a reading, by which such a line may be off: a bend of 3 % (SHAPE)
 UPRIGHT = 0.05  # cosine of the pitch from which on roll and yaw are one: 87 degrees
-
-
 # What shows where the thing turns only: along one line of forces a wrong time step is a scale and
 # a bias, and the world's axes are the body's.
 LEAST_LINE = 1e-5  # of an axis across it: none, but for a prior that has a width
@@ -59,8 +57,9 @@ class Hypothesis:
     which is gravity then, or 0; copies: the first so many triples of free, and the first scaled
     of columns, carry the signal's noise; shape_sd (3, 3): of E, None for SHAPE; smooth_sd: s2, of
     how much smoother it is, see Fit; full_scale: how many times the signal the real one reads by
-    a full scale that is not stated; slopes: the columns are the world's two level axes, times
-    gravity; shared: the simulator reads by the real one's full scale, whatever that is."""
+    a full scale that is not stated; slopes: the columns are the world's two level axes, times g;
+    shared: the simulator reads by the real one's full scale, whatever it is; behind: the LowPass
+    that the readings are behind."""
 
     name: str
     signal: np.ndarray
@@ -78,6 +77,7 @@ class Hypothesis:
     full_scale: float = 1.0
     slopes: bool = False
     shared: bool = False
+    behind: object = None
 
 
 def none(n):

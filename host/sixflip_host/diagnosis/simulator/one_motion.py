@@ -17,7 +17,6 @@ from . import (
     dead_zone,
     held_readings,
     hypotheses,
-    low_pass,
     motion_match,
     own_calibration,
     own_motion,
@@ -26,6 +25,7 @@ from . import (
     single_log,
     timing,
     traces,
+    transfer,
 )
 from .evidence_of_logs import shifted
 from .pairing import GRID_HZ
@@ -122,10 +122,10 @@ def logs_of(real, sim, aligned):
     behind = {}
     if motion is not None:
         logs = real_free, sim_free
-        behind = low_pass.between(*logs, aligned, motion, live)
+        behind = transfer.between(*logs, aligned, motion, live)
         if behind:
             aligned = motion_match.paced(*logs, aligned, behind)
-            behind = low_pass.between(*logs, aligned, motion, live)
+            behind = transfer.between(*logs, aligned, motion, live)
     return Logs(real, sim, real_free, sim_free, holds, aligned, live, constant, own_real, motion,
                 behind, unseen)
 
