@@ -11,6 +11,7 @@ import numpy as np
 from sixflip import STANDARD_G as G
 
 from ..capture.registers import SENSORS
+from ..diagnosis.simulator.low_pass import FIRST_ORDER, LowPass
 from ..errors import BadFile, UsageError
 from ..experiment.terms import of_the_moment
 
@@ -108,8 +109,12 @@ def from_diagnosis(answer):
     simulator = answer["simulator"]
     numbers = simulator["parameters"]
     rate = ((numbers.get("device") or {}).get("rate") or {}).get("all") or {}
-    lags = {k: lag(numbers.get(k, {})) for k in ("accel", "gyro")}
-    delays, lever, left, first = relative_delay(numbers, lags), np.zeros(3), [], []
+    passes = {k: low_pass(numbers.get(k, {})) for k in SENSORS}
+    lags = {k: one.seconds if one and one.of == "real" and one.form == FIRST_ORDER else 0.0
+            for k, one in passes.items()}
+    kept = {k: one for k, one in passes.items() if one and not lags[k]}
+    delays, lever, first = relative_delay(numbers, kept), np.zeros(3), []
+    left = ["%s (%s)" % (one.words, k) for k, one in kept.items()]
     for c in simulator["conventions"]:
         if c["name"] == "lever_arm_missing":
             lever = np.array([c["value"][a] for a in AXES]) / 100.0
@@ -202,19 +207,20 @@ def triad(kind, named, effects, lag_s, delay_s, rate_hz):
     return Triad(matrix, bias, noise, step, limit, lag_s, delay_s, effects)
 
 
-def lag(named):
-    """s: the pole by which the real sensor is smoother than the simulator; 0 for none. A pole of
-    time constant tau differs from a delay by half its square, with the opposite sign."""
+def low_pass(named):
+    """The LowPass that one of the two has and the other has not, or None."""
     p = named.get("smoothness", {}).get("all")
-    return float(np.sqrt(2.0 * p["difference"])) * 1e-3 if p and p["differs"] and (
-        p["difference"] > 0) else 0.0
+    return LowPass.of_half_square(-1e-6 * p["difference"], p.get("form", FIRST_ORDER)) \
+        if p and p["differs"] else None
 
 
-def relative_delay(numbers, lags):
-    """{sensor: s}: the sensor to delay so that gyro and accelerometer lie as in the real one."""
+def relative_delay(numbers, kept):
+    """{sensor: s}: the sensor to delay so that gyro and accelerometer lie as in the real one; kept
+    {sensor: LowPass}: those that are not put right in here, whose delay has to be all the same."""
     p = numbers.get("gyro", {}).get("delay", {}).get("all")
     wanted = 1e-3 * p["difference"] if p and p["differs"] else 0.0
-    wanted -= lags["gyro"] - lags["accel"]
+    late = {kind: kept[kind].late_s if kind in kept else 0.0 for kind in SENSORS}
+    wanted -= late["gyro"] - late["accel"]
     return {"gyro": max(wanted, 0.0), "accel": abs(min(wanted, 0.0))}
 
 

@@ -93,3 +93,34 @@ def test_a_slope_is_about_the_temperature_that_it_was_taken_about():
     said["simulator"]["reference_c"] = 30.0
     model = made(said)
     assert model.step(np.zeros(3), np.zeros(3), 21.0)[0] == pytest.approx(np.zeros(3))
+
+
+def of_time(smooth_ms2, form="first order", delay_ms=None):
+    """The answer where a gyro differs by a low-pass, and the sensors by a delay beside it."""
+    gyro = {"smoothness": {"all": {"difference": smooth_ms2, "differs": True, "form": form}}}
+    if delay_ms is not None:
+        gyro["delay"] = {"all": {"difference": delay_ms, "differs": True}}
+    said = answer([])
+    said["simulator"]["parameters"] = {"gyro": gyro}
+    return put_back.from_diagnosis(said)
+
+
+def test_a_pole_goes_in_with_its_own_delay_and_what_is_late_beside_it():
+    """8 ms: 32 ms2 are half of its square."""
+    one = of_time(32.0)
+    assert one.gyro.lag_s == pytest.approx(0.008)
+    assert one.gyro.delay_s == 0.0 and one.accel.delay_s == 0.0 and one.left == ()
+    assert of_time(32.0, delay_ms=5.0).gyro.delay_s == pytest.approx(0.005)
+    assert of_time(32.0, delay_ms=-5.0).accel.delay_s == pytest.approx(0.005)
+
+
+@pytest.mark.parametrize("smooth_ms2, form, late_s", [
+    (32.0, "second order (Butterworth)", 0.008 * np.sqrt(2.0)), (6.0, "mean", 0.006),
+    (-32.0, "first order", -0.008)])
+def test_of_a_low_pass_that_does_not_go_in_the_delay_does(smooth_ms2, form, late_s):
+    """A mean of 12 ms is late by half of it, and bends as much as a 24th of its square."""
+    one = of_time(smooth_ms2, form)
+    assert one.gyro.lag_s == 0.0
+    assert one.gyro.delay_s - one.accel.delay_s == pytest.approx(late_s)
+    said, = one.left
+    assert said.endswith("(gyro)") and ("mean" in said or form in said)

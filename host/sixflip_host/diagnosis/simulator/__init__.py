@@ -2,13 +2,14 @@
 
 traces, log_rests, rest_or_course, row_times, single_log, log_noise, held_readings
                                    what one log says of itself
-alignment, motion_match, lag_path, clock_course, pairing
-                                    two logs of one motion on one clock and one grid
+alignment, motion_match, lag_path, clock_course, pairing, low_pass, transfer
+                                    two logs of one motion on one clock and one grid, and behind
+                                    one low-pass
 one_motion, hypotheses, sensor_axes, evidence_of_logs, conventions, convention_findings
                                    layer 1: what the simulator's numbers mean, by the same motion
 own_rests, own_calibration, turned_in_box, own_motion, own_consistency, gravity_directions
                                    layer 1 where the motions differ: each log by its own rests
-parameters, noise_and_registers, noise_band, shaking, numbers_told
+parameters, timing, noise_and_registers, noise_band, shaking, numbers_told
                                    layer 2: the numbers to set, and what they close of the gap
 against_simulator, shaken_alike, dead_zone, lacking_effects, lacking_courses, effects_beside
                                    layer 3: the effects that one has and the other lacks

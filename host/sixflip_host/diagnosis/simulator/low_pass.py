@@ -32,11 +32,17 @@ class LowPass:
     of: str
 
     @classmethod
-    def of_half_square(cls, s2, like=None):
-        """The LowPass by which the simulator's log is smoother, s2 as in evidence_of_logs.Fit, of
-        the form of another one, or a pole: of two poles one after the other it adds up."""
-        form = FIRST_ORDER if like is None else like.form
+    def of_half_square(cls, s2, form=FIRST_ORDER):
+        """The LowPass by which the simulator's log is smoother, s2 as in evidence_of_logs.Fit: of
+        two poles one after the other it adds up."""
         return cls(form, float(np.sqrt(abs(s2) / HALF_SQUARE[form])), "sim" if s2 > 0 else "real")
+
+    @property
+    def words(self):
+        ms = 1e3 * self.seconds
+        return "mean of %.3g ms" % ms if self.form == MEAN else \
+            "low-pass of %s at %.3g Hz (time constant %.3g ms)" % (
+                self.form, 1e3 / (2.0 * np.pi * ms), ms)
 
     def on(self, log):
         """What the log, "sim" or "real", has to be put behind, or None."""

@@ -1,5 +1,5 @@
 """Layer two: the numbers to set. Bias, scale and misalignment of the simulator and of the real
-sensor side by side, each with its interval (delay, smoothness and clock: own_motion.py).
+sensor side by side, each with its interval (delay, smoothness and clock: timing.py).
 
 Two logs of one motion give the difference directly; logs of different motions give each sensor by
 its own rests and moves, and the difference with the sum of both covariances.
@@ -35,8 +35,8 @@ class Parameter:
     """name; sensor accel, gyro or device; axis "x", "xy" (row, column) or ""; unit; real and
     simulated: values with intervals (low, high) at 90 %, None where a log cannot say; difference
     real less simulated with its interval; differs; set_to: the simulator's value to set; how: what
-    to do in words, of a number that simulators have no field for; least: as of
-    compared()."""
+    to do in words, of a number that simulators have no field for; least: as of compared(); form:
+    of a low-pass (low_pass.FORMS)."""
 
     name: str
     sensor: str
@@ -52,6 +52,7 @@ class Parameter:
     set_to: float
     how: str = ""
     least: float = 0.0
+    form: str = ""
 
 
 def compared(name, sensor, axis, unit, real, real_sigma, sim, sim_sigma, difference=None,

@@ -71,6 +71,8 @@ def numbers(parameters):
             "difference": number(p.difference),
             "difference_interval_90": span(p.difference_interval), "differs": p.differs,
             "set": number(p.set_to, whole(p)), "how": p.how}
+        if p.form:
+            place[p.axis or "all"]["form"] = p.form
     return by_sensor
 
 

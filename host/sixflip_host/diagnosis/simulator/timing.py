@@ -7,7 +7,7 @@ from math import erfc
 import numpy as np
 
 from . import convention_findings, parameters
-from .low_pass import LATE, MEAN, LowPass
+from .low_pass import FIRST_ORDER, LATE, LowPass
 
 # An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's
 # semi-implicit step) differs from itself by as much at two step sizes of 1 and 2 ms.
@@ -50,10 +50,11 @@ def smoothness(fits, freed):
             "smoothness", kind, "", "ms²", None, np.inf, None, np.inf, -1e6 * s2, 1e6 * sigma,
             least=LEAST_SMOOTH_MS2,
             apart=np.sqrt(max(apart ** 2 - sensor_fit.smoothing_earns, 0.0)))
-        said = LowPass.of_half_square(s2, low_pass) if told.differs else None
-        every[kind] = Smoothness(
-            told if said is None else replace(told, how=smoother(said)), said,
-            0.0 if said is None else 0.5 * said.seconds * sigma / abs(s2))
+        said = None
+        if told.differs:
+            said = LowPass.of_half_square(s2, low_pass.form if low_pass else FIRST_ORDER)
+            told = replace(told, how=smoother(said), form=said.form)
+        every[kind] = Smoothness(told, said, 0.5 * said.seconds * sigma / abs(s2) if said else 0.0)
     return every
 
 
@@ -97,12 +98,8 @@ def later(ms):
 
 def smoother(low_pass):
     """What to do about a LowPass that one of the logs has."""
-    ms = 1e3 * low_pass.seconds
-    said = "mean of %.3g ms" % ms if low_pass.form == MEAN else \
-        "low-pass of %s at %.3g Hz (time constant %.3g ms)" % (
-            low_pass.form, 1e3 / (2.0 * np.pi * ms), ms)
-    return "put a %s behind it" % said if low_pass.of == "real" else \
-        "it is smoother than the sensor by a %s: take as much out" % said
+    return "put a %s behind it" % low_pass.words if low_pass.of == "real" else \
+        "it is smoother than the sensor by a %s: take as much out" % low_pass.words
 
 
 def faster(percent):
