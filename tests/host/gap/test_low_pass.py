@@ -132,6 +132,6 @@ def test_a_form_is_late_by_what_it_says_and_bends_as_a_pole_of_so_much(form):
              "mean": lambda f: window(f, 0.02)}[form](hz)
     assert np.angle(whole) == pytest.approx(-2.0 * np.pi * hz * one.late_s, rel=1e-3)
     assert np.abs(one.response(hz)) == pytest.approx(np.abs(whole), rel=1e-9)
-    back = low_pass.LowPass.of_half_square(one.half_square_s2, one)
+    back = low_pass.LowPass.of_half_square(one.half_square_s2, form)
     assert back.seconds == pytest.approx(0.02) and back.of == "sim" and back.form == form
     assert one.on("sim") is None and one.on("real") is one

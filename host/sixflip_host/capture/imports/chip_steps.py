@@ -9,14 +9,14 @@ import numpy as np
 from sixflip.chips import catalogue
 
 from ..capture_header import ACCEL, GYRO, STANDARD_G
-from . import units
+from . import units, value_steps
 
 COUNTS = 32768          # of a full scale, by which many loggers divide it
 TELLS = 1e-4            # of a step: data sheets round 250 / 32768 to 1 / 131, which is five of it
 # Different values of an axis, at most, whose grid is looked for: 16 bits have room for eight times
 # as many. Values beyond the first ones, at least: each lies on a grid by chance with twice
-# units.ON_GRID. Parts of a step, at least and at most, in which an offset is kept: a mean is off
-# by half of one.
+# value_steps.ON_GRID. Parts of a step, at least and at most, in which an offset is kept: a mean is
+# off by half of one.
 MOST_CODES, FEWEST_ON_GRID, PARTS = 4096, 8, (64, 1024)
 LOGGERS_G = (STANDARD_G, 9.81, 9.8)     # m/s² that loggers make of 1 g
 
@@ -42,8 +42,8 @@ PER_UNIT = {ACCEL: [("g", 1.0), ("mg", 1e-3), *(("m/s2", 1 / g) for g in LOGGERS
             GYRO: [(unit, units.GYRO_UNITS[unit]) for unit in ("dps", "rad/s", "mdps")]}
 
 
-class Sizes(units.Sizes):
-    """units.Sizes that also keeps the different values of each axis, as long as they are few."""
+class Sizes(value_steps.Sizes):
+    """Sizes that also keeps the different values of each axis, as long as they are few."""
 
     def __init__(self):
         super().__init__()
@@ -61,7 +61,7 @@ class Sizes(units.Sizes):
         gaps = np.concatenate([np.diff(axis) for axis in axes] or [np.zeros(0)])
         if len(gaps) < FEWEST_ON_GRID or max(map(len, axes)) > MOST_CODES:
             return None
-        for step in units.least_gaps(gaps, max(float(np.abs(axis).max()) for axis in axes)):
+        for step in value_steps.least_gaps(gaps, max(float(np.abs(axis).max()) for axis in axes)):
             for near in (8, 50, 1000, math.inf):
                 number = np.rint(gaps / step)
                 few = number <= near
@@ -69,7 +69,7 @@ class Sizes(units.Sizes):
             offsets = [float(np.median(axis - np.rint((axis - axis[0]) / step) * step))
                        for axis in axes]
             whole = [(axis - offset) / step for axis, offset in zip(axes, offsets)]
-            if max(float(np.abs(x - np.rint(x)).max()) for x in whole) < units.ON_GRID:
+            if max(float(np.abs(x - np.rint(x)).max()) for x in whole) < value_steps.ON_GRID:
                 return step, np.array(offsets)
         return None
 
@@ -96,7 +96,7 @@ def is_a_chips(sensor, size, told=TELLS):
 
 
 def told(sensor, step):
-    """The ChipStep that the step of a sensor's values is, or None; step: as units.Sizes has it."""
+    """The ChipStep that the step of a sensor's values is, or None; step: as Sizes has it."""
     if step is None:
         return None
     of, sizes = SIZES[sensor]

@@ -21,7 +21,7 @@ class ToldUnits:
     and what is odd into `remarks`.
 
     named   {sensor: unit} in the columns' names, or of the format; rows: of the table
-    sizes   {group of columns: units.Sizes}; rate_hz: of the rows
+    sizes   {group of columns: value_steps.Sizes}; rate_hz: of the rows
     columns {our name: column of the table}
     """
 

@@ -9,6 +9,7 @@ from sixflip import RAIL
 
 from ...errors import BadFile
 from ..capture_header import STANDARD_G
+from .value_steps import ON_GRID
 
 # how many g, or deg/s, one of the unit is; None: counts already
 ACCEL_UNITS = {"counts": None, "si": 1 / STANDARD_G, "m/s2": 1 / STANDARD_G, "g": 1.0,
@@ -16,77 +17,12 @@ ACCEL_UNITS = {"counts": None, "si": 1 / STANDARD_G, "m/s2": 1 / STANDARD_G, "g"
 GYRO_UNITS = {"counts": None, "si": 180 / math.pi, "rad/s": 180 / math.pi, "dps": 1.0,
               "deg/s": 1.0, "mdps": 1e-3}
 LARGEST = 1e9           # in any unit: no sensor, and squares of more leave a float
-MOST_DISTINCT = 1 << 17 # sizes of values in whole steps: 16 bits have a quarter of that
-MOST_ROUNDED = 40       # sizes of whole numbers that may be rounded ones: counts at rest have less
-ROUNDED = 1e-5, 1e-9    # of the largest value: gaps that are less, of singles, of doubles
-ON_GRID = 0.02          # of a step: how far values may lie off whole steps to be called counts
-FEWEST_PRINTED, COARSER = 20, 3.0   # sizes; last decimals of a step: a third lie on it by chance
 ROOM = 32000            # counts that the largest of float values gets; the rest is headroom
 MOST_ON_RAIL = 1e-3     # share of samples one count beyond 16 bits that are taken as on the rail
 AT_A_TIME = 1 << 16     # rows; the first of them are new values
 # Rows in which a value that stays has one count: more than any log has that is read faster than
 # its sensor (32 in detect/held_values.py), few enough for the mean of a rest.
 HELD_ROWS = 64
-
-
-class Sizes:
-    """The different sizes that values have, collected block by block, as long as they can be
-    those of counts."""
-
-    def __init__(self):
-        self._distinct = np.zeros(0)
-
-    def add(self, values):
-        """More values, float of any shape."""
-        if self._distinct is None:
-            return
-        self._distinct = np.union1d(self._distinct, np.abs(values))
-        if len(self._distinct) > MOST_DISTINCT:
-            self._distinct = None
-
-    def are_many(self):
-        """True for more sizes than whole degrees a second have, which somebody rounded to."""
-        return self._distinct is None or len(self._distinct) > MOST_ROUNDED
-
-    def step(self):
-        """What all are whole multiples of, or None; the smallest gap is the first guess."""
-        distinct = np.zeros(0) if self._distinct is None else self._distinct
-        gaps = np.diff(np.concatenate(([0.0], distinct)))
-        largest = max(distinct.max(initial=0.0), 1e-300)
-        for least in least_gaps(gaps, largest):
-            step, off = _fitted(distinct, least, (8, 50, 1000, np.inf))
-            levels = len(np.unique(np.rint(distinct / step)))
-            if off < ON_GRID and levels >= min(len(distinct), FEWEST_PRINTED):
-                return step
-        return _as_printed(distinct, gaps[gaps > ROUNDED[1] * largest])
-
-
-def least_gaps(gaps, largest):
-    """[size] of the least gaps that are no rounding of singles, or of doubles, so large."""
-    return [float(gaps[gaps > part * largest].min()) for part in ROUNDED
-            if (gaps > part * largest).any()]
-
-
-def _fitted(distinct, step, nears):
-    """(step, how far the sizes lie off whole ones) by least squares from a rough step, which is
-    good for multiples up to each of nears only."""
-    for near in nears:
-        multiples = np.rint(distinct / step)
-        few = (multiples <= near) & (multiples > 0)
-        if few.any():
-            step = float((distinct[few] * multiples[few]).sum() / (multiples[few] ** 2).sum())
-    return step, float(np.abs(distinct / step - np.rint(distinct / step)).max())
-
-
-def _as_printed(distinct, gaps):
-    """The step that decimals hide: sizes lie off it by half of the last one, or None."""
-    printed = next((10.0 ** -k for k in range(1, 8) if np.abs(
-        distinct * 10.0 ** k - np.rint(distinct * 10.0 ** k)).max() < ON_GRID / 100), None)
-    if printed is None or len(distinct) < FEWEST_PRINTED:
-        return None
-    step, off = _fitted(distinct, float(gaps[gaps < gaps.min() + 1.5 * printed].mean()),
-                        (3, 8, 50, 1000, np.inf))
-    return step if step > COARSER * printed and off < ON_GRID + 0.5 * printed / step else None
 
 
 def _blocks(values):

@@ -5,7 +5,8 @@ traces, log_rests, rest_or_course, row_times, single_log, log_noise, held_readin
 alignment, motion_match, lag_path, clock_course, pairing, low_pass, transfer
                                     two logs of one motion on one clock and one grid, and behind
                                     one low-pass
-one_motion, hypotheses, sensor_axes, evidence_of_logs, conventions, convention_findings
+one_motion, hypotheses, own_effects, sensor_axes, evidence_of_logs, conventions,
+convention_findings
                                    layer 1: what the simulator's numbers mean, by the same motion
 own_rests, own_calibration, turned_in_box, own_motion, own_consistency, gravity_directions
                                    layer 1 where the motions differ: each log by its own rests

@@ -12,6 +12,7 @@ from . import (
     hypotheses,
     motion_match,
     numbers_told,
+    own_effects,
     pairing,
     remaining_gap,
     sensor_axes,
@@ -78,8 +79,7 @@ class SensorFit:
 
 def same_motion(real, sim, alignment, motion, live, fresh_hz, behind, own_real):
     """{sensor: SensorFit} of two aligned Traces; own_real: the real one's OwnSensor; live
-    {sensor: (3,)}: channels that change; behind {sensor: LowPass}: what one of the logs has of the
-    two (transfer.between)."""
+    {sensor: (3,)}: channels that change; behind {sensor: LowPass} (transfer.between)."""
     sensor_fits, swapped, said = {}, None, ()
     for kind in ("accel", "gyro"):
         if live[kind].any():
@@ -105,31 +105,31 @@ def one_sensor(kind, real, sim, alignment, motion, live, fresh_hz, behind, own_r
         if (share < 1.0).any() or single_log.silent(sim, kind):
             measured = measured + single_log.rounding(kind, (real, sim), len(pair.t), pair.band_hz)
             pair = replace(pair, **{"sim_force" if kind == "accel" else "sim_rate": measured})
-        made = hypotheses.accelerometer if kind == "accel" else hypotheses.gyro
-        made = made if alignment.turning else hypotheses.along_one_line
+        made = hypotheses.made(kind, alignment.turning)
         heard = measured[:, live]
         left = pairing.not_foretold(made(values, pair.motion, real.g)[-1], heard)
         # Where no log tells it what is not foretold is all that says how noisy they are.
         density = 0.0 if noise is None else noise.density
-        values = pairing.reliable(values, np.maximum(np.sqrt(2.0 * pair.band_hz * share) * density,
-                                                     pairing.shaken(left, heard, values)))
-        tried = [replace(h, full_scale=full_scale, behind=behind)
+        sigma = np.sqrt(2.0 * pair.band_hz * share) * density
+        more = {"behind": behind, **({} if kind == "accel" else {
+            "shape_sd": sensor_axes.turning(values, pair.force, sigma)})}
+        values = pairing.reliable(values, np.maximum(sigma, pairing.shaken(left, heard, values)))
+        tried = [replace(h, full_scale=full_scale, **more)
                  for h in made(values / full_scale, pair.motion, real.g)]
         if full_scale != 1.0:  # it may be that of the simulator's log as well
             tried.insert(0, hypotheses.Hypothesis(
-                "healthy", values, *hypotheses.none(len(values)), shared=True, behind=behind))
+                "healthy", values, *hypotheses.none(len(values)), shared=True, **more))
         return pair, measured, tried, evidence_of_logs.bends(left, pairing.GRID_HZ)
 
     logs = real, sim, alignment, motion
     pair, measured, tried, noise_bends = asked(pairing.paired(*logs, low_pass=behind))
-    nameless = tried[-1]
     band = min(fresh_hz / HELD_BAND, pairing.coherent_band(
-        measured, np.concatenate([nameless.signal, nameless.free], 1)))
+        measured, np.concatenate([tried[-1].signal, tried[-1].free], 1)))
     if band < pair.band_hz:
         pair, measured, tried, noise_bends = asked(pairing.paired(*logs, band, behind))
 
     as_read = pair if behind is None else pairing.paired(*logs, pair.band_hz)
-    own = effects = hypotheses.own_effects(
+    own = effects = own_effects.of_everything(
         kind, pair.t, pair.celsius, pair.force, pair.motion.rate, real.g)
 
     def judged(tried, inflation, rows=None, **most):

@@ -17,8 +17,8 @@ from ..detect.detection import Finding
 from . import alignment as align_by
 from . import (
     conventions,
-    hypotheses,
     lacking_effects,
+    own_effects,
     pairing,
     parameters,
     remaining_gap,
@@ -136,7 +136,7 @@ def _of_axis(axis, sensor_fit, sim, noise, least, centres):
     turns = compared(sim.rate)
     beside = np.column_stack([
         np.delete(turns, axis, axis=1), np.ones(len(turns)),
-        hypotheses.of_time("gyro", pair.t, pair.celsius)[0]])
+        own_effects.of_time("gyro", pair.t, pair.celsius)[0]])
 
     def left(own, rows=slice(None), more=()):
         """read less what own (n,) with its slopes says of it, by a fit to some rows; its gain."""
@@ -181,7 +181,7 @@ def _of_axis(axis, sensor_fit, sim, noise, least, centres):
     least_power, form, centre, rate = min(likeliest)
     rest = left(banded(form, centre, rate))[0]
     number = len(rest) / align_by.independent(rest)
-    knots = hypotheses.bent(own[:, None])[0]
+    knots = own_effects.bent(own[:, None])[0]
     bent = (left(own, more=(knots,))[0] ** 2).mean()
     # What is fitted besides costs half the logarithm of what fits it [Schwarz, Annals of
     # Statistics 6 (1978) 461].

@@ -74,7 +74,7 @@ def fits(hypothesis, measured, kind, grid_hz, inflation=1.0, own=None, live=None
     takes away; most: rows that a fit looks at."""
     live = np.ones(3, bool) if live is None else live
     every_fit = []
-    for axes, unit in sensor_axes.candidates(hypothesis, measured, kind, live, swapped):
+    for axes, unit in sensor_axes.candidates(hypothesis, measured, kind, live, swapped, own):
         def fitted(axes, unit=unit):
             return fit_one(hypothesis, measured, axes, unit, grid_hz, kind, inflation, own, live,
                            rows, left=False, noise_bends=noise_bends, most=most)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import alignment
+from .own_effects import pairs
 from .pairing import GRID_HZ
 from .sensor_axes import SHAPE
 from .traces import spinning
@@ -25,22 +26,10 @@ SMOOTH_S2 = 2e-4  # half the square of a pole of 8 Hz
 # Steps of physics in one of the sensor, or the reverse, and how far a factor may be off.
 TIMES = (0.05, 0.1, 0.2, 0.25, 0.33, 0.5, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0)
 TIMES_SPREAD = 0.1  # relative standard deviation of each
-# What a real part does of itself, at three times the size that datasheets give: MPU-6050 PS rev
-# 3.4, tables 6.1 and 6.2 (35 mg and 20 deg/s over 60 degC, 0.5 % and 0.2 % nonlinearity, 0.1
-# deg/s/g). Scales that differ between the two signs: of a gyro 5.9 %, which were seen on parts
-# [GAP.md, "Effects"], of an accelerometer as much as a square. m/s2 and rad/s for each unit of the
-# column.
-OWN = {"accel": {"celsius": 0.03, "fading": 0.3, "line": 0.15, "pairs": 0.15, "signs": 0.15,
-                 "force": 0.0},
-       "gyro": {"celsius": 0.017, "fading": 0.017, "line": 0.017, "pairs": 0.006, "signs": 0.06,
-                "force": 0.006}}
-FADES_S = (30.0, 120.0)  # time constants of what fades: of a minute's log, and of warming up
 # Slower than the first a gyro's tilt between two rests is its own: a cross axis of 1 % of a robot
 # that turns to one side, or a tenth of a deg/s of bias, make a degree in ten seconds. What turns
 # to and fro makes it faster, up to where springs tilt a robot, at 1 to 2 Hz: octave by octave.
 WANDERS_HZ = (0.05, 0.1, 0.2, 0.4, 0.8, 1.6)
-KNOTS = 8  # of the bent line of an axis: four a side, a front end that levels off has one or two
-BENT = 0.03  # of a reading, by which such a line may be off: a bend of 3 % (SHAPE)
 UPRIGHT = 0.05  # cosine of the pitch from which on roll and yaw are one: 87 degrees
 # What shows where the thing turns only: along one line of forces a wrong time step is a scale and
 # a bias, and the world's axes are the body's.
@@ -167,61 +156,9 @@ def nameless(signal, everything, copies):
     return Hypothesis("", signal, *none(len(signal)), free=everything, copies=copies)
 
 
-def own_effects(kind, t, celsius, force, rate, g):
-    """(columns (n, q), prior sizes (q,)): what the real sensor of a kind adds of itself to each
-    channel; the simulator lacks it, so it is in the difference whatever its conventions are."""
-    time, motion = of_time(kind, t, celsius), of_motion(kind, force, rate, g)
-    return np.concatenate([time[0], motion[0]], 1), np.concatenate([time[1], motion[1]])
-
-
-def of_time(kind, t, celsius):
-    """own_effects() that go with the time and the temperature."""
-    size = OWN[kind]
-    fades = [np.exp(-(t - t[0]) / tau) for tau in FADES_S]
-    columns = [x - x.mean() for x in fades] + [(t - t.mean()) / np.ptp(t)]
-    sizes = [size["fading"]] * len(FADES_S) + [size["line"]]
-    if celsius is not None and np.ptp(celsius) > 0.3:
-        columns.append(celsius - celsius.mean())
-        sizes.append(size["celsius"])
-    return np.stack(columns, 1), np.array(sizes)
-
-
-def of_motion(kind, force, rate, g):
-    """own_effects() that go with what acts."""
-    size, columns, sizes = OWN[kind], [], []
-    f = force / g
-    own = f if kind == "accel" else rate
-    for name, bent in (("pairs", pairs(own)), ("signs", np.abs(own))):
-        columns += list((bent - bent.mean(axis=0)).T)
-        sizes += [size[name]] * bent.shape[1]
-    if size["force"]:
-        columns += list((f - f.mean(axis=0)).T)
-        sizes += [size["force"]] * 3
-    return np.stack(columns, 1), np.array(sizes)
-
-
 def spun(motion):
     """(n, 3, 3): what multiplies r in w x (w x r) of a Motion."""
     return spinning(motion.rate) if motion.spin is None else motion.spin
-
-
-def bent(readings):
-    """(columns (n, 3 KNOTS), sizes): of readings (n, 3) any line of each axis that bends at
-    knots evenly apart, by hats."""
-    columns, sizes = [], []
-    for own in readings.T:
-        knots = np.linspace(own.min(), own.max(), KNOTS)
-        hats = np.stack([np.interp(own, knots, hat) for hat in np.eye(KNOTS)], 1)
-        columns.append(hats - hats.mean(axis=0))
-        sizes += [BENT * float(np.abs(own).max())] * KNOTS
-    return np.concatenate(columns, 1), np.array(sizes)
-
-
-def of_products(kind, force, rate, g):
-    """(columns (n, 21), sizes): the products of two of all readings, g and rad/s, in each channel
-    as large as what drifts."""
-    columns = pairs(np.concatenate([force / g, rate], 1))
-    return columns - columns.mean(axis=0), np.full(columns.shape[1], OWN[kind]["line"])
 
 
 def lever_columns(motion):
@@ -244,7 +181,6 @@ def crooked_arm(motion):
     return (np.eye(3)[:, :, None] * parts[:, None, None, :]).reshape(len(parts), 3, -1)
 
 
-def pairs(x):
-    """(n, k (k + 1) / 2): the products of two of the columns of x (n, k)."""
-    k = x.shape[1]
-    return np.stack([x[:, i] * x[:, j] for i in range(k) for j in range(i, k)], 1)
+def made(kind, turning):
+    """The function that makes the Hypotheses of a sensor of what turns, or only moves."""
+    return gyro if kind == "gyro" else accelerometer if turning else along_one_line

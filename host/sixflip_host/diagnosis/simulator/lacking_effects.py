@@ -19,7 +19,7 @@ from ..detect.detection import Finding
 from ..effect_estimates import believable
 from ..hypotheses import Form
 from . import alignment as align_by
-from . import conventions, effects_beside, hypotheses, pairing, remaining_gap
+from . import conventions, effects_beside, own_effects, pairing, remaining_gap
 from .parameters import DIFFERS, MG
 from .sensor_axes import DEG
 
@@ -172,12 +172,12 @@ def _rivals(kind, sensor_fit, held, names, diagnosis, rows):
                  np.concatenate([nuisance[1], sizes * width])) for width in widths]
 
     def of_other_form(name, nuisance):
-        return widened(nuisance, hypotheses.bent(np.abs(readings)),
+        return widened(nuisance, own_effects.bent(np.abs(readings)),
                        WIDTHS[1:]) if name in EVEN else []
 
     readings = pair.real(kind)
     none = np.zeros((len(pair.t), 0)), np.zeros(0)
-    time = widened(none, hypotheses.of_time(kind, pair.t, pair.celsius), WIDTHS)
+    time = widened(none, own_effects.of_time(kind, pair.t, pair.celsius), WIDTHS)
     nothing = likeliest(held, (), time + [
         wide for name in held for each in time for wide in of_other_form(name, each)])
     common, rivals = nothing.nuisance, [nothing]
@@ -185,9 +185,9 @@ def _rivals(kind, sensor_fit, held, names, diagnosis, rows):
         if name not in held:
             rivals.append(likeliest((*held, name), (_design(kind, name, pair, diagnosis),),
                                     [common, *of_other_form(name, common)]))
-    for nameless in (hypotheses.of_motion(kind, pair.force, pair.motion.rate, STANDARD_G),
-                     hypotheses.of_products(kind, pair.force, pair.motion.rate, STANDARD_G),
-                     hypotheses.bent(readings)):
+    for nameless in (own_effects.of_motion(kind, pair.force, pair.motion.rate, STANDARD_G),
+                     own_effects.of_products(kind, pair.force, pair.motion.rate, STANDARD_G),
+                     own_effects.bent(readings)):
         rivals.append(likeliest((*held, ""), (), widened(common, nameless, WIDTHS)))
     return rivals
 

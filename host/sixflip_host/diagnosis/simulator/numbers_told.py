@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from .. import odds
-from . import evidence_of_logs, hypotheses, parameters, remaining_gap
+from . import evidence_of_logs, hypotheses, own_effects, parameters, remaining_gap
 from .alignment import errors, independent
 from .parameters import MG
 from .sensor_axes import DEG
@@ -28,7 +28,7 @@ def told(sensor_fit, numbers, flicker):
     flicker, mg or deg/s. numbers: list of Parameter of all sensors."""
     kind, h = sensor_fit.kind, sensor_fit.hypothesis
     unit = sensor_fit.fit.unit * (MG if kind == "accel" else DEG)
-    columns, sizes = hypotheses.of_time(kind, sensor_fit.pair.t, sensor_fit.pair.celsius)
+    columns, sizes = own_effects.of_time(kind, sensor_fit.pair.t, sensor_fit.pair.celsius)
     course = columns, np.minimum(sizes, flicker / unit / np.ptp(columns, axis=0))
     mine = [p for p in numbers if p.sensor == kind and p.name in ("bias", "scale", "misalignment")]
     # Where none of them was compared, as beside a wrong time step, nothing is known of what is

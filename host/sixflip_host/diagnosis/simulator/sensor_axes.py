@@ -14,6 +14,7 @@ SHAPE = 0.04
 DEAD = 0.1  # of the other channels' gain: below it a channel does not answer
 DEG = 180.0 / np.pi
 HEARD = 2.0  # times what is left of a channel, above which its own motion would show in it
+UNHEARD = 1e-6  # of E, where it does not: none, but for a prior that has a width
 GRAVITY_TELLS = 0.8  # m/s2 along an axis, from which on it is no bias (MPU-6050, 80 mg)
 NOTHING = 0.5  # of a channel's power, from which on it says nothing of the motion
 # rad about each axis by which a sensor is mounted otherwise than along an axis of the other one
@@ -22,8 +23,9 @@ NOTHING = 0.5  # of a channel's power, from which on it says nothing of the moti
 MOUNTED, LEAST_TURN = 0.3, 2.0 * SHAPE
 
 
-def candidates(hypothesis, measured, kind, live, swapped=None):
-    """[(S (3, 3), unit)]"""
+def candidates(hypothesis, measured, kind, live, swapped=None, real_own=None):
+    """[(S (3, 3), unit)]; real_own (columns (n, q), sizes (q,)): what the real sensor adds of
+    itself, or None."""
     y = hypothesis.signal
     design = np.column_stack([y, np.ones(len(y))])
     free = np.linalg.lstsq(design, measured, rcond=None)[0][:3].T
@@ -37,9 +39,10 @@ def candidates(hypothesis, measured, kind, live, swapped=None):
     free[~live] = 0.0
     tried = [(np.eye(3), unit) for unit in (units if hypothesis.name else units[:1])]
     if hypothesis.name:
-        # Of a robot on a floor z is what x and y make of it by how crooked it stands, and noise:
-        # what it answers to does not show.
-        own = np.stack([left_of(y[:, i], np.delete(design, i, axis=1)) for i in range(3)], 1)
+        # Of a robot on a floor z is what x and y make of it by how crooked it stands, and noise,
+        # and of an arm's joint what forces make of it: what it answers to does not show.
+        added = design if real_own is None else np.column_stack([design, real_own[0]])
+        own = np.stack([left_of(y[:, i], np.delete(added, i, axis=1)) for i in range(3)], 1)
         # By their power: the gain of a channel that reads noise alone may be anything.
         gain = np.sqrt(measured[:, live].var(axis=0).sum() / max(y[:, live].var(axis=0).sum(),
                                                                  1e-30))
@@ -65,6 +68,17 @@ def candidates(hypothesis, measured, kind, live, swapped=None):
             if other is not None and not any(alike(other, s) for s, _ in tried):
                 tried.append((other, 1.0))
     return tried
+
+
+def turning(values, force, noise):
+    """(3, 3) prior widths of E of a gyro that reads values (n, 3) beside the force (n, 3), with
+    noise (3,): what an axis reads that is no more than other axes and forces make of it, and
+    noise, as an arm's joint does across, says nothing of what is made of it."""
+    beside = np.column_stack([force, np.ones(len(values))])
+    own = np.stack([left_of(values[:, i], np.column_stack([np.delete(values, i, axis=1), beside]))
+                    for i in range(3)], 1)
+    heard = own.std(axis=0) > HEARD * noise
+    return np.where(heard if heard.any() else True, SHAPE, UNHEARD) * np.ones((3, 3))
 
 
 def turned(free):

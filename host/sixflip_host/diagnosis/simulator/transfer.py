@@ -36,11 +36,10 @@ def between(real, sim, alignment, motion, live):
     """{sensor: LowPass} of two Traces of one motion, where there is one; live {sensor: (3,)}:
     channels of the simulator's that change."""
     pair, kinds = paired(real, sim, alignment, motion), [k for k in live if live[k].any()]
-    made = {"accel": hypotheses.accelerometer if alignment.turning else hypotheses.along_one_line,
-            "gyro": hypotheses.gyro}
-    asked = {kind: _asked(made[kind](pair.real(kind), pair.motion, real.g)[-1],
-                          pair.simulated(kind)[:, live[kind]], pair.t, pair.band_hz,
-                          [log.noise[kind] for log in (real, sim)]) for kind in kinds}
+    asked = {kind: _asked(
+        hypotheses.made(kind, alignment.turning)(pair.real(kind), pair.motion, real.g)[-1],
+        pair.simulated(kind)[:, live[kind]], pair.t, pair.band_hz,
+        [log.noise[kind] for log in (real, sim)]) for kind in kinds}
     own = {kind: each.low_pass for kind, each in asked.items() if each is not None}
     found = [x for x in own.values() if x is not None]
     # What one sensor of a part shows for certain the other may show less of.
