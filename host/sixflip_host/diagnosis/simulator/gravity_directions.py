@@ -44,17 +44,33 @@ def moves(trace):
     return ways
 
 
-def closeness(a, b, sigma=SIGMA, before=None):
-    """log density of direction a given b, each (…, 3), up to a constant; nothing at all is
-    always possible [Fisher, Proc. R. Soc. A 217 (1953), 295]. sigma: rad, of a direction.
-    before (3,): that of the rest before, in which a thing is laid down again as often as not
-    wherever its gyro takes it: that it was is no sign of anything else."""
-    def near(b, sigma):
-        return np.exp(((a * b).sum(axis=-1) - 1.0) / sigma ** 2) / (2.0 * np.pi * sigma ** 2)
-    anywhere = 1.0 / (4.0 * np.pi)
-    if before is not None:
-        anywhere = (1.0 - AGAIN) * anywhere + AGAIN * near(before, SIGMA)
-    return np.log((1 - ASTRAY) * near(b, sigma) + ASTRAY * anywhere)
+def near(a, b, sigma):
+    """Density of direction a about b, each (…, 3), that is known to sigma rad [Fisher, Proc. R.
+    Soc. A 217 (1953), 295]."""
+    return np.exp(((a * b).sum(axis=-1) - 1.0) / sigma ** 2) / (2.0 * np.pi * sigma ** 2)
+
+
+def closeness(a, b, sigma=SIGMA):
+    """log density of direction a given b; nothing at all is always possible."""
+    return np.log((1.0 - ASTRAY) * near(a, b, sigma) + ASTRAY / (4.0 * np.pi))
+
+
+def habit(a, before, far, sigma=0.0):
+    """Density of direction a at a rest after the direction before, by how a thing is moved in a
+    log, as far as far rad, and as often as not laid down as it lay before; of a that is itself
+    known to sigma only."""
+    return (1.0 - AGAIN) * near(a, before, np.hypot(np.maximum(far, SIGMA), sigma)) \
+        + AGAIN * near(a, before, np.hypot(SIGMA, sigma))
+
+
+def lands(a, b, sigma, before, far):
+    """log density of the direction a at a rest, to which the gyro takes the one before as b, known
+    to sigma: by that and the habit of the log. Where a thing is laid down as it lay each
+    time, a gyro that says so less sharply than the habit takes nothing from it."""
+    both = habit(a, before, far) * near(a, b, sigma) / np.maximum(
+        habit(b, before, far, sigma), 1e-300)
+    return np.log((1.0 - ASTRAY) * both + ASTRAY * (
+        (1.0 - AGAIN) / (4.0 * np.pi) + AGAIN * near(a, before, SIGMA)))
 
 
 @dataclass(frozen=True)
@@ -71,7 +87,8 @@ class Carried:
         """Sum over the moves of how likely gravity after each is; body (rests, 3): directions."""
         up = body[self.before]
         predicted = np.einsum("mji,mj->mi", self.turn, up)
-        return float(np.sum(closeness(body[self.after], predicted, carries(self.spread, up), up)))
+        return float(np.sum(lands(body[self.after], predicted, carries(self.spread, up), up,
+                                  goes(up, body[self.after]))))
 
 
 def carried_by(ways, gyro):
@@ -150,14 +167,14 @@ def world_log(body, ways):
     z = np.array([0.0, 0.0, 1.0])
     wholes = [(before, after, reduce(lambda whole, turn: turn @ whole, rotations(steps)))
               for before, after, steps in ways]
-    best = []
+    best, far = [], goes(*(body[[way[k] for way in ways]] for k in (0, 1)))
     for psi in np.linspace(0.0, 2.0 * np.pi, HEADINGS, endpoint=False):
         c, s = np.cos(psi), np.sin(psi)
         attitude = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]) @ rotation_between(body[0], z)
         total = 0.0
         for before, after, whole in wholes:
             attitude = whole @ attitude
-            total += closeness(body[after], attitude[2], before=body[before])
+            total += lands(body[after], attitude[2], SIGMA, body[before], far)
             attitude = rotation_between(attitude @ body[after], z) @ attitude
         best.append(total)
     top = max(best)
@@ -166,9 +183,9 @@ def world_log(body, ways):
 
 def nameless_log(ups, ways):
     """Gravity goes as far as it does in this log, into any direction: the gyro says nothing."""
-    far = np.sqrt(np.mean(np.square(turned(ups, ways))) / 2.0)
-    return float(sum(closeness(ups[after], ups[before], max(far, SIGMA))
-                     for before, after, _ in ways))
+    before, after = (ups[[way[k] for way in ways]].reshape(-1, 3) for k in (0, 1))
+    return float(np.log((1.0 - ASTRAY) * habit(after, before, goes(before, after))
+                        + ASTRAY / (4.0 * np.pi)).sum())
 
 
 def constant_log(ups, ways, sim):
@@ -204,6 +221,12 @@ def should_turn(ups, ways):
         turn = carried(rotations(steps))[-1]
         angles.append(float(np.arccos(np.clip(ups[before] @ (turn.T @ ups[before]), -1.0, 1.0))))
     return max(angles)
+
+
+def goes(before, after):
+    """rad about either axis, root mean square, by which directions before (m, 3) go to after."""
+    return float(np.sqrt(np.mean(np.arccos(np.clip(
+        (before * after).sum(axis=1), -1.0, 1.0)) ** 2) / 2.0)) if len(before) else 0.0
 
 
 def turned(ups, ways):
