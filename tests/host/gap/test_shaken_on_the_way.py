@@ -37,6 +37,21 @@ def test_what_motors_shake_on_the_way_is_compared_by_its_power(real, simulated, 
     assert z.set_to is None and bool(z.how) is bool(differs)
 
 
+@pytest.mark.parametrize("real, simulated, differs", [
+    (70.0, 0.0, ["z"]), (0.0, 70.0, ["z"]), (70.0, 70.0, [])])
+def test_what_runs_at_rest_as_well_shakes_one_log_alone(real, simulated, differs):
+    """A fan of 31 Hz was as loud at rest as on the way, which it added nothing to: no gap."""
+    logs = [moving(0.0, seed) for seed in (7, 8)]
+    for log, mg in zip(logs, (real, simulated)):
+        log.force[:, 2] += np.sqrt(2.0) * mg / parameters.MG * np.sin(2.0 * np.pi * 31.0 * log.t)
+    numbers = shaking.shaking(*logs, SAME_CLOCK)
+    assert [p.axis for p in numbers if p.differs] == differs
+    if differs:
+        z, = [p for p in numbers if p.differs]
+        assert z.difference == pytest.approx(real - simulated, rel=0.1)
+        assert "at 31 Hz" in z.how
+
+
 @pytest.mark.parametrize("mg, together, differs", [
     (0.0, False, []), (0.0, True, []), (30.0, True, ["z"]), (60.0, False, ["z"])])
 def test_a_motor_s_line_under_a_floor_s_rumbling_is_in_one_log_alone(mg, together, differs):
@@ -56,7 +71,7 @@ def test_a_motor_s_line_under_a_floor_s_rumbling_is_in_one_log_alone(mg, togethe
         if differs:
             z, = [p for p in numbers if p.differs]
             assert sign * z.difference == pytest.approx(mg, rel=0.35)
-            assert "at 31 Hz" in z.how or "at 32 Hz" in z.how or "at 30 Hz" in z.how
+            assert "at 31 Hz" in z.how
 
 
 @pytest.mark.parametrize("soft, differs", [(0.3, []), (1.2, ["x"])])
@@ -108,4 +123,4 @@ def test_a_line_too_slow_for_a_motor_is_told_and_a_gait_of_both_is_none(own, bot
         if differs:
             z, = [p for p in numbers if p.differs]
             assert abs(z.difference) == pytest.approx(own, rel=0.25)
-            assert "at 8 Hz" in z.how or "at 10 Hz" in z.how
+            assert "at 9 Hz" in z.how

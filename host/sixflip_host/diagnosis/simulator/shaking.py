@@ -48,6 +48,11 @@ class Spectra:
         still = self.still[bins, axis]
         return float(still.sum()), float(np.sqrt(2.0 * (still ** 2).sum() / self.rests))
 
+    def beside_a_line(self, bins, axis):
+        """The same of what the noise at rest has there: what runs there, too, is no noise."""
+        noise = np.minimum(self.still[bins, axis], np.median(self.still[:, axis]))
+        return float(noise.sum()), float(np.sqrt(2.0 * (noise ** 2).sum() / self.rests))
+
 
 @dataclass(frozen=True)
 class Levels:
@@ -130,7 +135,7 @@ def _line(real, sim, i):
         each.append(alone * np.clip((power[0] - shared) / mean, 0.0, 1.0))
     lines = [slice(k - LOBE, k + LOBE + 1) for k in range(LOBE, bins - LOBE)]
     of_lines = [_levels([e[:, line].sum(axis=1) for e in each],
-                        [s.at_rest(line, i) for s in (real, sim)]) for line in lines]
+                        [s.beside_a_line(line, i) for s in (real, sim)]) for line in lines]
     powers = np.array([levels.power + levels.floor for levels in of_lines])
     stronger = int(np.diff(powers[SLOWEST:].max(axis=0))[0] > 0.0)
     at = SLOWEST + int(np.argmax(powers[SLOWEST:, stronger]))
@@ -141,7 +146,9 @@ def _line(real, sim, i):
     rare = -special.ndtri(special.ndtr(-DIFFERS) / len(of_lines))
     if powers[at, stronger] <= SHAKES ** 2 * beside or not of_lines[at].differ(rare):
         return nothing
-    return of_lines[at], "at %.0f Hz" % (FEET_HZ + (at + LOBE) / PIECE_S)
+    inside = whole[stronger][lines[at]]  # of a line between two bins either has a part
+    middle = float(inside @ np.arange(bins)[lines[at]] / inside.sum())
+    return of_lines[at], "at %.0f Hz" % (FEET_HZ + middle / PIECE_S)
 
 
 def _parameter(kind, axis, levels, where):
