@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis.simulator import comparison, one_motion, single_log
+from sixflip_host.diagnosis.simulator import comparison, single_log, stopping
 from tests.worlds.tumbled import read, tumbled
 
 
@@ -31,10 +31,26 @@ def test_where_it_stops_is_a_range_and_no_scale(change, monkeypatch):
     ranges = {p.axis: p.real for p in found.differs if p.name == "range"}
     assert ranges and all(level == pytest.approx(80.0, rel=0.04) for level in ranges.values())
     assert "delay" not in {p.name for p in found.differs}
-    monkeypatch.setattr(one_motion, "stops_of", lambda fits: {})
+    monkeypatch.setattr(stopping, "found", lambda fits: ())
     without = compared(change)
     assert scale(found) < 0.6 < 1.5 < scale(without)
     assert found.gap["gyro"][1] < 0.2 * without.gap["gyro"][1]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("change", [cut, soft])
+def test_a_simulator_that_stops_short_has_another_range(change):
+    """It was a scale of 2 % and a shaking of the real one's."""
+    t, force, rate = tumbled(1)
+    found = comparison.compare([("real", read(t, force, rate, 1))], "sim",
+                               read(t, force, change(rate), 101))
+    ranges = [p for p in found.differs if p.name == "range"]
+    assert ranges and {p.sensor for p in ranges} == {"gyro"}
+    for parameter in ranges:
+        assert parameter.simulated == pytest.approx(80.0, rel=0.04)
+        assert parameter.difference > 5.0 and parameter.set_to is None
+        assert parameter.how.startswith("let it go on: the real one reads up to")
+    assert scale(found) < 0.6
 
 
 def scale(found):
@@ -72,7 +88,7 @@ def test_what_only_makes_less_of_its_peaks_has_no_other_range(change):
 def test_few_readings_beyond_say_nothing():
     real, simulated = np.sin(np.linspace(0.0, 60.0, 3000)), np.sin(np.linspace(0.0, 60.0, 3000))
     simulated[70:80] = 1.5
-    assert one_motion.stop_of(real, simulated) is None
+    assert stopping.level_of(real, simulated) is None
 
 
 def test_a_motor_that_does_not_go_beyond_its_rate_is_no_stop():
@@ -81,8 +97,8 @@ def test_a_motor_that_does_not_go_beyond_its_rate_is_no_stop():
     rate = np.clip(4.0 * np.sin(0.6 * t), -1.0, 1.0)
     started = np.convolve(np.abs(np.diff(rate, prepend=0.0)) > 0.0, np.ones(16), "full")[:len(t)]
     beyond = rate * (1.0 + 0.15 * (started > 0.0) * (np.abs(rate) >= 1.0))
-    assert one_motion.stop_of(rate, beyond) is None
-    assert one_motion.stop_of(rate, 4.0 * np.sin(0.6 * t)) == pytest.approx(1.0)
+    assert stopping.level_of(rate, beyond) is None
+    assert stopping.level_of(rate, 4.0 * np.sin(0.6 * t)) == pytest.approx(1.0)
 
 
 def test_a_register_that_is_full_is_a_range_and_nothing_shakes():
@@ -115,7 +131,7 @@ def test_a_steady_rate_of_another_size_is_no_range():
     rng, t = np.random.default_rng(1), np.arange(0.0, 60.0, 0.02)
     rate = np.clip(0.08 * np.sin(0.6 * t), -0.025, 0.025)
     real, simulated = (scale * rate + 1e-4 * rng.standard_normal(len(t)) for scale in (1.0, 1.15))
-    assert one_motion.stop_of(real, simulated) is None
+    assert stopping.level_of(real, simulated) is None
 
 
 @pytest.mark.parametrize("after, left", [(3.8, ["gyro"]), (0.02, [])])

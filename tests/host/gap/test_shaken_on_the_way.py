@@ -22,7 +22,8 @@ def moving(mg, seed, hertz=37.0):
     force[:, 2] += drives * np.sqrt(2.0) * mg / parameters.MG * np.sin(phase)
     rests = tuple((2000 * k + 20, 2000 * k + 780) for k in range(4))
     return SimpleNamespace(rate_hz=200.0, t=t, force=force, rate=None, rests=rests,
-                           put_in=np.zeros(len(t), bool))
+                           put_in=np.zeros(len(t), bool),
+                           railed=np.zeros(len(t), bool))
 
 
 @pytest.mark.parametrize("real, simulated, differs", [

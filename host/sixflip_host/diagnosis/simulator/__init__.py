@@ -10,7 +10,7 @@ convention_findings
                                    layer 1: what the simulator's numbers mean, by the same motion
 own_rests, own_calibration, turned_in_box, own_motion, own_consistency, gravity_directions
                                    layer 1 where the motions differ: each log by its own rests
-parameters, timing, noise_and_registers, noise_band, shaking, numbers_told
+parameters, timing, stopping, noise_and_registers, noise_band, shaking, numbers_told
                                    layer 2: the numbers to set, and what they close of the gap
 against_simulator, shaken_alike, dead_zone, lacking_effects, lacking_courses, effects_beside
                                    layer 3: the effects that one has and the other lacks

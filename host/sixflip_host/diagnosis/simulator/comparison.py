@@ -23,6 +23,7 @@ from . import (
     shaking,
     simulator_answer,
     single_log,
+    stopping,
     timing,
     traces,
     turned_in_box,
@@ -210,14 +211,16 @@ def _conventions(logs):
 
 
 def _of_range_and_time(logs, together, numbers, findings):
-    """[Parameter] of where the real one stops, what shakes it and of time, of one motion."""
+    """[Parameter] of where one stops and the other goes on, what shakes them and of time, of one
+    motion."""
     real, sim, fits = logs.real, logs.sim, together.fits
     cut = {(p.sensor, p.axis) for p in numbers if p.name == "range"}
-    more = [p for p in one_motion.ranges(together.stops, real, sim)
+    more = [p for p in stopping.ranges(together.stops, real, sim)
             if (p.sensor, p.axis) not in cut]
     if len(fits) == 2 and not findings:
         more += shaking.shaking(
-            real, dead_zone.taken_off(sim, together.bands), logs.aligned,
+            stopping.marked(real, together.stops, "real"), dead_zone.taken_off(
+                stopping.marked(sim, together.stops, "sim"), together.bands), logs.aligned,
             {kind: x.low_pass for kind, x in together.smoothed.items() if x.low_pass})
     return more + timing.slope(fits) + timing.compared(
         together.late, together.late_sigma, together.smoothed, logs.aligned)

@@ -81,7 +81,8 @@ def shaking(real, sim, aligned, behind=None):
             continue
         # What one of them cuts off is left out of both: it is where they are shaken most.
         ends = np.array([[single_log.limit(x) or np.inf for x in v.T] for v in values]).min(axis=0)
-        clipped = [(np.abs(v) >= ends).any(axis=1) for v in values]
+        clipped = [(np.abs(v) >= ends).any(axis=1) | log.railed
+                   for log, v in zip((real, sim), values)]
         low_pass = (behind or {}).get(kind)
         puts = [low_pass and low_pass.on(which) for which in ("real", "sim")]
         own = [_spectra(log, v, cut, top, put)
