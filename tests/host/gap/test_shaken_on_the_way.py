@@ -23,7 +23,8 @@ def moving(mg, seed, hertz=37.0):
     rests = tuple((2000 * k + 20, 2000 * k + 780) for k in range(4))
     return SimpleNamespace(rate_hz=200.0, t=t, force=force, rate=None, rests=rests,
                            put_in=np.zeros(len(t), bool),
-                           railed=np.zeros(len(t), bool))
+                           railed=np.zeros(len(t), bool),
+                           quantum=(0.0012, 2.7e-4))
 
 
 @pytest.mark.parametrize("real, simulated, differs", [
@@ -51,6 +52,15 @@ def test_what_runs_at_rest_as_well_shakes_one_log_alone(real, simulated, differs
         z, = [p for p in numbers if p.differs]
         assert z.difference == pytest.approx(real - simulated, rel=0.1)
         assert "at 31 Hz" in z.how
+
+
+def test_coarse_steps_shake_nothing():
+    """At rest it read one code; on its way it "shook too much" by what the steps rounded off."""
+    real, coarse = moving(0.0, 9), moving(0.0, 10)
+    coarse.force = 0.6 * np.round(coarse.force / 0.6)
+    coarse.quantum = 0.6, 2.7e-4
+    numbers = shaking.shaking(real, coarse, SAME_CLOCK)
+    assert numbers and not [p for p in numbers if p.differs]
 
 
 @pytest.mark.parametrize("mg, together, differs", [

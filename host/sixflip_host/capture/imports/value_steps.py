@@ -5,7 +5,7 @@ MOST_DISTINCT = 1 << 17 # sizes of values in whole steps: 16 bits have a quarter
 MOST_ROUNDED = 40       # sizes of whole numbers that may be rounded ones: counts at rest have less
 ROUNDED = 1e-5, 1e-9    # of the largest value: gaps that are less, of singles, of doubles
 ON_GRID = 0.02          # of a step: how far values may lie off whole steps to be called counts
-FEWEST_PRINTED, COARSER = 20, 3.0   # sizes; last decimals of a step: a third lie on it by chance
+FEWEST_PRINTED, COARSER = 32, 2.0   # sizes; last decimals of a step: half lie on it by chance
 
 
 class Sizes:

@@ -85,11 +85,14 @@ def shaking(real, sim, aligned, behind=None):
                    for log, v in zip((real, sim), values)]
         low_pass = (behind or {}).get(kind)
         puts = [low_pass and low_pass.on(which) for which in ("real", "sim")]
-        own = [_spectra(log, v, cut, top, put)
-               for log, v, cut, put in zip((real, sim), values, clipped, puts)]
+        steps = [single_log.step(v, log.quantum[kind == "gyro"])
+                 for log, v in zip((real, sim), values)]
+        own = [_spectra(log, v, cut, top, *more)
+               for log, v, cut, *more in zip((real, sim), values, clipped, steps, puts)]
         if any(s is None for s in own):
             continue
-        beside = _spectra(*_on_its_rows(real, sim, aligned, values[1], clipped[1]), top, puts[1])
+        beside = _spectra(*_on_its_rows(real, sim, aligned, values[1], clipped[1]), top,
+                          steps[1], puts[1])
         for i, axis in enumerate("xyz"):
             levels, where = _of_band(own, i), "between %.0f and %.0f Hz" % (FASTER_HZ, top)
             if not levels.differ(DIFFERS):
@@ -180,9 +183,10 @@ def _on_its_rows(real, sim, aligned, values, cut):
     return real, np.where(outside[:, None], 0.0, spline), bad | outside
 
 
-def _spectra(trace, values, cut, top, low_pass=None):
+def _spectra(trace, values, cut, top, step, low_pass=None):
     """Spectra of values (n, 3) at the rows of a Trace, away from what is cut off (n,), up to a
-    frequency, behind a LowPass or none; None where there is too little of moving or of rest."""
+    frequency, behind a LowPass or none; None where there is too little of moving or of rest. What
+    steps (3,) do to a motion that crosses them is noise, though a rest may lie within one."""
     hz = np.arange(FEET_HZ, top, 1.0 / PIECE_S)
     made, still, read = pieces(trace, values, cut, hz)
     if low_pass is not None:
@@ -190,8 +194,9 @@ def _spectra(trace, values, cut, top, low_pass=None):
     moves, rests = read & ~still.any(axis=1), read & still.all(axis=1)
     if moves.sum() * PIECE_S < FEWEST_S or rests.sum() < FEWEST_RESTS:
         return None
-    return Spectra(made[moves], np.flatnonzero(moves),
-                   (np.abs(made[rests]) ** 2).mean(axis=0), int(rests.sum()))
+    rounded = step ** 2 / 12.0 / (0.5 * PIECE_S * trace.rate_hz)  # of a bin
+    return Spectra(made[moves], np.flatnonzero(moves), np.maximum(
+        (np.abs(made[rests]) ** 2).mean(axis=0), rounded), int(rests.sum()))
 
 
 def pieces(trace, values, cut, wanted):
