@@ -62,11 +62,13 @@ def _as_printed(distinct, gaps):
     printed = _last_places(distinct)
     if printed is None or len(distinct) < FEWEST_PRINTED:
         return None
-    step, _ = _fitted(distinct, float(gaps[gaps < gaps.min() + 1.5 * printed.min()].mean()),
-                      (3, 8, 50, 1000, np.inf))
-    off = np.abs(distinct / step - np.rint(distinct / step))
-    hidden = step > COARSER * printed.max() and (off < ON_GRID + 0.5 * printed / step).all()
-    return step if hidden else None
+    for some in (gaps, gaps[:2 * FEWEST_PRINTED]):  # the smallest sizes have most decimals
+        step, _ = _fitted(distinct, float(some[some < some.min() + 1.5 * printed.min()].mean()),
+                          (3, 8, 50, 1000, np.inf))
+        off = np.abs(distinct / step - np.rint(distinct / step))
+        if step > COARSER * printed.max() and (off < ON_GRID + 0.5 * printed / step).all():
+            return step
+    return None
 
 
 def _last_places(distinct):

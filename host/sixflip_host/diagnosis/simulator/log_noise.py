@@ -13,6 +13,10 @@ from . import log_rests
 # root of the number [Rousseeuw, Croux, J. Am. Stat. Assoc. 88 (1993)].
 MEDIAN_SIGMA = 1.17
 NEIGHBOURS = 0.87  # the same of one taken from white differences of neighbours: half of 3^0.5
+# Of a rest that is a hover, or a stop in which it still turns, neighbouring means differ by its
+# course; by their second differences that is nothing. Their power of white noise, 1 + 4 + 1, and
+# how many of their squares, by the correlation of these, count as one.
+ORDER, ORDER_POWER, ALIKE = 2, 6.0, 1.94
 SETTLING = 4.0  # times the usual power: five means of one noise differ by as much in 0.3 %
 SHORTEST_MEAN = 2  # samples
 # Chance of noise to have a line in one channel of a rest; hertz below which what warms up or what
@@ -62,9 +66,9 @@ def _level(trace, values, m):
     if len(squares) < 4:
         return None
     # By the median: in a part of a rest one axis may still be moved.
-    power = np.median(squares, axis=0) / MEDIAN_OF_SQUARE / 2.0
+    power = np.median(squares, axis=0) / MEDIAN_OF_SQUARE / ORDER_POWER
     return (power / (window ** 2).sum() / trace.rate_hz,
-            float(MEDIAN_SIGMA / np.sqrt(len(squares) / 1.5)), sample)
+            float(MEDIAN_SIGMA / np.sqrt(len(squares) / ALIKE)), sample)
 
 
 def _as_far_as_flat(trace, values, m, power, sigma):
@@ -84,16 +88,16 @@ def _as_far_as_flat(trace, values, m, power, sigma):
 
 
 def _squares(trace, values, window):
-    """((k, 3) squared differences of neighbouring means of values (n, 3) over a window, (j, 3) of
-    neighbouring samples) within the Trace's rests."""
+    """((k, 3) squared second differences of means of values (n, 3) over a window, (j, 3) squared
+    differences of neighbouring samples) within the Trace's rests."""
     rests, m = [], len(window)
     for a, b in trace.rests:
         x = values[a:b]
         k = len(x) // m
-        if k >= 2:
+        if k > ORDER:
             quiet = without_line(x, trace.rate_hz)
             means = np.einsum("kmi,m->ki", quiet[:k * m].reshape(k, m, 3), window)
-            rests.append((np.diff(means, axis=0) ** 2, np.diff(x, axis=0) ** 2))
+            rests.append((np.diff(means, ORDER, axis=0) ** 2, np.diff(x, axis=0) ** 2))
     if len(rests) > 2:
         # A rest in which the robot still settles says nothing of the sensor's noise.
         level = [means.mean(axis=0).sum() for means, _ in rests]
