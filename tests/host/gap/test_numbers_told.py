@@ -198,3 +198,16 @@ def test_a_noise_that_is_hardly_known_ends_above_nothing():
         assert 0.0 < p.real_interval[0] < p.real < p.real_interval[1]
         assert 0.0 < p.difference_interval[0] < p.difference < p.difference_interval[1]
         assert p.real_interval[1] / p.real == pytest.approx(p.real / p.real_interval[0])
+
+
+@pytest.mark.parametrize("scales, said", [
+    ((9.6 / 9.80665,) * 3, True), ((0.98, 1.02, 0.98), False), ((1.0, 0.98, 1.0), False)])
+def test_three_scales_alike_may_be_the_simulators_gravity(scales, said):
+    """A simulator of 9.6 m/s2 had "a scale of 2.15 %" three times, and nobody set its gravity."""
+    t, force, rate = tumbled(3, 80.0)
+    found = compared(t, force * scales, rate, force, rate)
+    told = [line for line in found.remarks if "gravity of" in line]
+    assert len(told) == said
+    if said:
+        assert "instead of 9.807" in told[0]
+        assert float(told[0].split("gravity of ")[1].split()[0]) == pytest.approx(9.6, abs=0.005)

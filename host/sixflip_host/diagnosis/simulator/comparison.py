@@ -173,7 +173,8 @@ def compare_traces(real, sim, aligned):
     task, why_not = remaining_gap.tried(logs.real_free, mended, *own, {
         kind: replace(fit, fit=fit.refitted(None)) for kind, fit in of_told.items()})
     remarks = (*simulator_answer.said_of(real, sim, logs.aligned),
-               *dead_zone.said_of(together.bands, together.of_gyro), *why_not)
+               *dead_zone.said_of(together.bands, together.of_gyro), *why_not,
+               *numbers_told.of_gravity(numbers, real.g))
     return Comparison(sim.name, real.name, logs.aligned, tuple(findings), tuple(numbers), task,
                       gap, fits, *own, remarks, tuple(unseen),
                       judged or convention_findings.only_in_motion(findings),

@@ -18,6 +18,7 @@ GYRO = 0.03
 # Share of moves and rests that follow nothing at all: a log of fifty moves may have one in which
 # the gyro was cut off or the robot slid, which then costs a hypothesis no more than ln 50 nats.
 ASTRAY = 0.02
+ANYWHERE = np.radians(20.0)  # of a direction, from which on a gyro says nothing of it
 AGAIN = 0.5  # of those after which it lies as it did before
 POSE = np.radians(15.0)  # how alike the rests of two runs of one robot are: ramps and slopes
 POSES_COUNT = 4  # runs of one robot stand alike: that many of its rests say something new
@@ -57,18 +58,17 @@ def closeness(a, b, sigma=SIGMA):
 
 def habit(a, before, far, sigma=0.0):
     """Density of direction a at a rest after the direction before, by how a thing is moved in a
-    log, as far as far rad, and as often as not laid down as it lay before; of a that is itself
-    known to sigma only."""
-    return (1.0 - AGAIN) * near(a, before, np.hypot(np.maximum(far, SIGMA), sigma)) \
-        + AGAIN * near(a, before, np.hypot(SIGMA, sigma))
+    log, as far as far rad; of a that is itself known to sigma only."""
+    return near(a, before, np.hypot(np.maximum(far, SIGMA), sigma))
 
 
 def lands(a, b, sigma, before, far):
     """log density of the direction a at a rest, to which the gyro takes the one before as b, known
     to sigma: by that and the habit of the log. Where a thing is laid down as it lay each
-    time, a gyro that says so less sharply than the habit takes nothing from it."""
-    both = habit(a, before, far) * near(a, b, sigma) / np.maximum(
-        habit(b, before, far, sigma), 1e-300)
+    time, a gyro that says so less sharply than the habit takes nothing from it; one by which it
+    turned so often that it may lie anywhere has no habit of lying as it lay."""
+    both = near(a, b, sigma) * np.where(sigma < ANYWHERE, habit(a, before, far) / np.maximum(
+        habit(b, before, far, sigma), 1e-300), 1.0)
     return np.log((1.0 - ASTRAY) * both + ASTRAY * (
         (1.0 - AGAIN) / (4.0 * np.pi) + AGAIN * near(a, before, SIGMA)))
 

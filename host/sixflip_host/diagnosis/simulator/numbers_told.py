@@ -20,6 +20,7 @@ SAME_BIAS = 1e-6  # m/s2 and rad/s, of a bias that does not: less than a count o
 # Standard deviations of what data sheets have, beyond which two parts do not differ: a fifth in
 # scale between the axes of one, half of gravity in bias.
 IMPOSSIBLE = 6.0
+ALIKE = 9.21  # chi squared of two degrees of freedom, by chance more in one of a hundred
 
 
 def told(sensor_fit, numbers, flicker):
@@ -60,6 +61,21 @@ def gap(numbers, fits, unmended, real, sim):
     left = {kind: remaining_gap.not_foretold(fit) for kind, fit in of_told.items()}
     return (numbers, of_told, remaining_gap.held_out(unmended, left, real, sim),
             remaining_gap.wandering(fits, left))
+
+
+def of_gravity(numbers, g):
+    """[sentence] where all three scales of the accelerometer differ by as much, within their
+    intervals: of what moves little a scale is a gravity (m/s2) set otherwise as well."""
+    scales = [p for p in numbers if (p.name, p.sensor) == ("scale", "accel") and p.differs]
+    if len(scales) < 3:
+        return []
+    sizes = np.array([p.difference for p in scales])
+    known = np.array([odds.Z_90 / (p.difference_interval[1] - p.difference) for p in scales]) ** 2
+    mean = float(sizes @ known) / known.sum()
+    if (sizes - mean) ** 2 @ known > ALIKE:
+        return []
+    return ["the scales of the accelerometer differ alike, by %.3g %%: a gravity of %.3f m/s² in "
+            "the simulator, instead of %.3f, is as likely" % (mean, g / (1.0 + 0.01 * mean), g)]
 
 
 def together(numbers, fits, gaps, wanders, flicker):

@@ -35,8 +35,8 @@ class Parameter:
     """name; sensor accel, gyro or device; axis "x", "xy" (row, column) or ""; unit; real and
     simulated: values with intervals (low, high) at 90 %, None where a log cannot say; difference
     real less simulated with its interval; differs; set_to: the simulator's value to set; how: what
-    to do in words, of a number that simulators have no field for; least: as of compared(); form:
-    of a low-pass (low_pass.FORMS)."""
+    to do in words, of a number that simulators have no field for; least: as of compared(); form
+    (low_pass.FORMS)."""
 
     name: str
     sensor: str
@@ -95,8 +95,7 @@ def shapes(real, sim, fits, usable, rounded=None, beside=False):
     """Bias, scale, misalignment; real, sim: OwnSensor or None; fits {sensor: SensorFit} of one
     motion or {}; usable {sensor: bool}: its conventions leave its numbers what they are; rounded
     {sensor: m/s2 or rad/s}, by which a simulator without noise errs the same way again and again;
-    beside: the fits have effects besides, which what is read at rest has in it.
-    """
+    beside: the fits have effects besides, which what is read at rest has in it."""
     numbers = []
     for kind in ("accel", "gyro"):
         if not usable.get(kind) or real is None or sim is None:
