@@ -10,6 +10,6 @@ nominal_rows, covariance
 terms, session_terms      the columns of every effect, and its variants that rests can show
 linear_model (gram, factored_gram)
                           rows and columns reduced to what all later questions need
-projection, signal_measures, noise_arrays
-                          least squares on columns, measures of recordings, and noise
+projection, signal_measures, noise_arrays, low_pass
+                          least squares on columns, measures of recordings, noise, and low-passes
 """

@@ -11,8 +11,8 @@ import numpy as np
 from sixflip import STANDARD_G as G
 
 from ..capture.registers import SENSORS
-from ..diagnosis.simulator.low_pass import FIRST_ORDER, LowPass
 from ..errors import BadFile, UsageError
+from ..experiment.low_pass import FIRST_ORDER, LowPass
 from ..experiment.terms import of_the_moment
 
 DEG = np.pi / 180.0

@@ -3,7 +3,8 @@ nothing else that it looks like."""
 import numpy as np
 import pytest
 
-from sixflip_host.diagnosis.simulator import comparison, low_pass, shaking, traces
+from sixflip_host.diagnosis.simulator import comparison, shaking, traces
+from sixflip_host.experiment import low_pass
 from tests.worlds.tumbled import RATE_HZ, attitudes, read
 
 

@@ -2,7 +2,7 @@
 
 traces, log_rests, rest_or_course, row_times, single_log, log_noise, held_readings
                                    what one log says of itself
-alignment, motion_match, lag_path, clock_course, pairing, low_pass, transfer
+alignment, motion_match, lag_path, clock_course, pairing, transfer
                                     two logs of one motion on one clock and one grid, and behind
                                     one low-pass
 one_motion, hypotheses, own_effects, sensor_axes, evidence_of_logs, conventions,

@@ -6,8 +6,8 @@ from math import erfc
 
 import numpy as np
 
+from ...experiment.low_pass import FIRST_ORDER, LATE, LowPass
 from . import convention_findings, parameters
-from .low_pass import FIRST_ORDER, LATE, LowPass
 
 # An engine whose rates are half a physics step older than its forces (MuJoCo, Featherstone's
 # semi-implicit step) differs from itself by as much at two step sizes of 1 and 2 ms.

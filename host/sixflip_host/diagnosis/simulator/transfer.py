@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import optimize
 
+from ...experiment.low_pass import FORMS, LATE, LEAST, LowPass
 from . import hypotheses
-from .low_pass import FORMS, LATE, LEAST, LowPass
 from .pairing import COHERENT, GRID_HZ, SEGMENT_S, paired
 
 # Time constants tried: from the one whose pole leaves all but 0.03 of the widest band on, by

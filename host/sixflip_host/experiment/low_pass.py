@@ -33,8 +33,8 @@ class LowPass:
 
     @classmethod
     def of_half_square(cls, s2, form=FIRST_ORDER):
-        """The LowPass by which the simulator's log is smoother, s2 as in evidence_of_logs.Fit: of
-        two poles one after the other it adds up."""
+        """The LowPass by which the simulator's log is smoother, by half the square s2 of a pole's
+        time constant, or by as much less: of two poles one after the other it adds up."""
         return cls(form, float(np.sqrt(abs(s2) / HALF_SQUARE[form])), "sim" if s2 > 0 else "real")
 
     @property
@@ -67,7 +67,7 @@ class LowPass:
 
     @property
     def half_square_s2(self):
-        """By how much smoother the simulator's log is, as evidence_of_logs.Fit has it."""
+        """By how much smoother the simulator's log is, see of_half_square."""
         return self._sign * HALF_SQUARE[self.form] * self.seconds ** 2
 
     @property
