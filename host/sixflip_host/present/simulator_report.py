@@ -14,10 +14,10 @@ BEFORE, AFTER, REAL = COLOURS[0], COLOURS[2], "0.35"
 
 
 def logs(fitted):
-    """(simulated, real, simulated with what was found) (n, 3) of a conventions.SensorFit."""
-    pair = fitted.pair
-    real = pair.force if fitted.kind == "accel" else pair.rate
-    simulated = pair.sim_force if fitted.kind == "accel" else pair.sim_rate
+    """(simulated, real, simulated with what was found) (n, 3) of a conventions.SensorFit, each as
+    it was read where both are known at the same times behind a low-pass that one of them has."""
+    pair = fitted.as_read if np.array_equal(fitted.as_read.t, fitted.pair.t) else fitted.pair
+    real, simulated = pair.real(fitted.kind), pair.simulated(fitted.kind)
     return simulated, real, real + fitted.fit.left @ fitted.fit.axes / fitted.fit.unit
 
 
