@@ -116,9 +116,12 @@ def delay(sensor_fits, row_s, smoothed):
             c.name == "unknown" for f in sensor_fits.values() for c in f.conventions):
         return None, None, []
     a, g = sensor_fits["accel"].fit, sensor_fits["gyro"].fit
-    late = g.delay_s - a.delay_s - smoothed["gyro"].late_s + smoothed["accel"].late_s
-    sigma = float(np.linalg.norm([a.delay_sigma_s, g.delay_sigma_s, *(
-        LATE[x.low_pass.form] * x.sigma_s for x in smoothed.values() if x.low_pass)]))
+    whole, own = g.delay_s - a.delay_s, float(np.hypot(a.delay_sigma_s, g.delay_sigma_s))
+    beyond = whole - smoothed["gyro"].late_s + smoothed["accel"].late_s
+    # Where only one sensor shows a low-pass that both have, they are late together.
+    late, sigma = min((whole, own), (beyond, float(np.linalg.norm([own, *(
+        LATE[x.low_pass.form] * x.sigma_s for x in smoothed.values() if x.low_pass)]))),
+        key=lambda told: abs(told[0]) / told[1])
     findings = [late_one(late, sigma)] if abs(late) > LATE_SIGMA * sigma and (
         abs(late) >= row_s) else []
     return late, sigma, findings
